@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <exception>
+
+namespace samestep {
+
+/// Every way a call can be refused: the exceptions of the MIS first, in its order, then our own.
+enum class Fault : std::uint8_t {
+  AttachedBody,
+  AttachedShape,
+  AttachedStaticBody,
+  AttachedStaticIndex,
+  BodyNotFound,
+  BufferOverflow,
+  CollisionContactOverflow,
+  CollisionError,
+  ContactIndexOutOfBounds,
+  DuplicateBody,
+  DuplicateShape,
+  IllegalBody,
+  IllegalSize,
+  ImmutableNumContacts,
+  IndexOutOfBounds,
+  InfiniteMass,
+  InsufficientBufferSize,
+  InvalidChild,
+  InvalidIter,
+  LeafError,
+  MainStaticBody,
+  NaNMass,
+  NaNMoment,
+  NegativeElasticity,
+  NegativeFriction,
+  NegativeHalfDimensions,
+  NegativeMass,
+  NegativeMoment,
+  NegativeRadius,
+  NotCircleShape,
+  NotSegmentShape,
+  NotPolyShape,
+  SameVertices,
+  ShapeNotFound,
+  SpaceLocked,
+  SpaceLockUnderflow,
+  StaticBodyMass,
+  UnsolvableCollision,
+  // Beyond the MIS.
+  InfiniteMoment,      ///< A moment of inertia that is infinite; see Body::nonRotating.
+  MassOutOfRange,      ///< A mass outside [1e-3, 1e6] kg that is not 0.
+  MomentOutOfRange,    ///< A moment of inertia outside the supported range that is not 0.
+  SizeOutOfRange,      ///< A length of a shape outside the supported range.
+  ValueOutOfRange,     ///< Any other number that is not finite or outside its documented range.
+  DegenerateShape,     ///< A polygon without area, with too few points or not convex; a segment that is a point.
+  TooManyVertices,     ///< A polygon with more vertices than kMaxPolyVertices.
+  BodyHasShapes,       ///< Removing a body that still has shapes.
+  MissingCallback,     ///< A callback number without a registered function.
+  ForeignWorld,        ///< A saved state of another kind of world.
+};
+
+/// The sentence a user reads: the MIS's own where it has one.
+const char* message(Fault fault);
+
+/// Base of everything the engine throws for a caller's mistake.
+class Error : public std::exception {
+ public:
+  Error(Fault fault, const char* text) : fault_(fault), text_(text) {}
+  Fault fault() const { return fault_; }
+  const char* what() const noexcept override { return text_; }
+
+ private:
+  Fault fault_;
+  const char* text_;
+};
+
+/// The exception type of one fault: catch (const NegativeMass&).
+template <Fault F>
+class FaultError : public Error {
+ public:
+  explicit FaultError(const char* text = message(F)) : Error(F, text) {}
+};
+
+using AttachedBody = FaultError<Fault::AttachedBody>;
+using AttachedShape = FaultError<Fault::AttachedShape>;
+using AttachedStaticBody = FaultError<Fault::AttachedStaticBody>;
+using AttachedStaticIndex = FaultError<Fault::AttachedStaticIndex>;
+using BodyNotFound = FaultError<Fault::BodyNotFound>;
+using BufferOverflow = FaultError<Fault::BufferOverflow>;
+using CollisionContactOverflow = FaultError<Fault::CollisionContactOverflow>;
+using CollisionError = FaultError<Fault::CollisionError>;
+using ContactIndexOutOfBounds = FaultError<Fault::ContactIndexOutOfBounds>;
+using DuplicateBody = FaultError<Fault::DuplicateBody>;
+using DuplicateShape = FaultError<Fault::DuplicateShape>;
+using IllegalBody = FaultError<Fault::IllegalBody>;
+using IllegalSize = FaultError<Fault::IllegalSize>;
+using ImmutableNumContacts = FaultError<Fault::ImmutableNumContacts>;
+using IndexOutOfBounds = FaultError<Fault::IndexOutOfBounds>;
+using InfiniteMass = FaultError<Fault::InfiniteMass>;
+using InsufficientBufferSize = FaultError<Fault::InsufficientBufferSize>;
+using InvalidChild = FaultError<Fault::InvalidChild>;
+using InvalidIter = FaultError<Fault::InvalidIter>;
+using LeafError = FaultError<Fault::LeafError>;
+using MainStaticBody = FaultError<Fault::MainStaticBody>;
+using NaNMass = FaultError<Fault::NaNMass>;
+using NaNMoment = FaultError<Fault::NaNMoment>;
+using NegativeElasticity = FaultError<Fault::NegativeElasticity>;
+using NegativeFriction = FaultError<Fault::NegativeFriction>;
+using NegativeHalfDimensions = FaultError<Fault::NegativeHalfDimensions>;
+using NegativeMass = FaultError<Fault::NegativeMass>;
+using NegativeMoment = FaultError<Fault::NegativeMoment>;
+using NegativeRadius = FaultError<Fault::NegativeRadius>;
+using NotCircleShape = FaultError<Fault::NotCircleShape>;
+using NotSegmentShape = FaultError<Fault::NotSegmentShape>;
+using NotPolyShape = FaultError<Fault::NotPolyShape>;
+using SameVertices = FaultError<Fault::SameVertices>;
+using ShapeNotFound = FaultError<Fault::ShapeNotFound>;
+using SpaceLocked = FaultError<Fault::SpaceLocked>;
+using SpaceLockUnderflow = FaultError<Fault::SpaceLockUnderflow>;
+using StaticBodyMass = FaultError<Fault::StaticBodyMass>;
+using UnsolvableCollision = FaultError<Fault::UnsolvableCollision>;
+using InfiniteMoment = FaultError<Fault::InfiniteMoment>;
+using MassOutOfRange = FaultError<Fault::MassOutOfRange>;
+using MomentOutOfRange = FaultError<Fault::MomentOutOfRange>;
+using SizeOutOfRange = FaultError<Fault::SizeOutOfRange>;
+using ValueOutOfRange = FaultError<Fault::ValueOutOfRange>;
+using DegenerateShape = FaultError<Fault::DegenerateShape>;
+using TooManyVertices = FaultError<Fault::TooManyVertices>;
+using BodyHasShapes = FaultError<Fault::BodyHasShapes>;
+using MissingCallback = FaultError<Fault::MissingCallback>;
+using ForeignWorld = FaultError<Fault::ForeignWorld>;
+
+[[noreturn]] void failWithoutExceptions(Fault fault, const char* text);
+
+/// Throws the exception of a fault, with the MIS's sentence or a more specific one that lives for ever. In a
+/// build without exceptions calls the failure handler, then aborts.
+template <Fault F>
+[[noreturn]] void fail(const char* text = message(F)) {
+#if defined(__cpp_exceptions)
+  throw FaultError<F>(text);
+#else
+  failWithoutExceptions(F, text);
+#endif
+}
+
+/// Refuses the call unless the condition holds. Called before anything changes.
+template <Fault F>
+[[gnu::always_inline]] inline constexpr void require(bool condition) {
+  if (!condition) [[unlikely]] fail<F>();
+}
+template <Fault F>
+[[gnu::always_inline]] inline constexpr void require(bool condition, const char* text) {
+  if (!condition) [[unlikely]] fail<F>(text);
+}
+
+/// Called with the fault before a build without exceptions aborts. Default: none.
+using FailureHandler = void (*)(Fault, const char* text);
+void setFailureHandler(FailureHandler handler);
+
+}  // namespace samestep

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/math.h>
+
+namespace samestep {
+
+/// What the engine must know of a number type beyond its functions. Specialised for each supported type;
+/// any other type is refused by the concept Scalar.
+template <class S>
+struct ScalarTraits {
+  static constexpr bool kSupported = false;
+};
+
+/// The tag that recordings and snapshots carry for the number type.
+enum class ScalarKind : std::uint8_t { fixed = 1, float64 = 2 };
+
+template <class Rep, int kFractionBits, class Overflow>
+struct ScalarTraits<BasicFixed<Rep, kFractionBits, Overflow>> {
+  static constexpr bool kSupported = true;
+  static constexpr ScalarKind kKind = ScalarKind::fixed;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+template <>
+struct ScalarTraits<double> {
+  static constexpr bool kSupported = true;
+  static constexpr ScalarKind kKind = ScalarKind::float64;
+};
+#endif
+
+/// double, Fixed or CheckedFixed: the numbers the engine is instantiated for.
+template <class S>
+concept Scalar = ScalarTraits<S>::kSupported;
+
+/// numerator / denominator, rounded to the nearest S.
+template <Scalar S>
+constexpr S ratio(int numerator, int denominator) {
+  return S(numerator) / S(denominator);
+}
+
+}  // namespace samestep
