@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/id.h>
+#include <samestep/limits.h>
+#include <samestep/transform.h>
+#include <samestep/vector.h>
+
+namespace samestep {
+
+template <Scalar S>
+class Space;
+
+/// What moves a body. MIS: BodyType, with Chipmunk's kinematic bodies.
+enum class BodyType : std::uint8_t {
+  dynamicBody = 0,    ///< Forces, gravity and contacts.
+  kinematicBody = 1,  ///< Only its own velocity; pushes dynamic bodies, is pushed by nothing.
+  staticBody = 2,     ///< Nothing; its velocity is zero.
+};
+
+/// Names a position or velocity function registered with the Space; 0 is the built-in one.
+using CallbackNumber = std::uint32_t;
+
+/// What all shapes of a body weigh together.
+template <Scalar S>
+struct MassProperties {
+  S mass{};
+  Scaled<S> moment{};       ///< kg m^2 about the centre of mass.
+  Vector<S> centerOfMass{}; ///< In body coordinates, m.
+};
+
+/// A rigid body: mass, pose and motion about its centre of mass. MIS section 4.
+///
+/// A value that carries the id its Space gave it, or none; see detached(). The ranges of samestep/limits.h
+/// hold for every setter, which throws before it changes anything. A mass, moment or inverse of a static or
+/// kinematic body reads 0: it cannot be moved by any impulse, and no infinity exists here.
+template <Scalar S>
+class Body {
+ public:
+  /// A dynamic body at rest at the origin.
+  /// @param mass    kg, 0 or in [1e-3, 1e6]; 0 means: accumulate it from the shapes before the first step
+  /// @param moment  kg m^2 about the centre of mass, 0 or in [2^-20, 2^30]
+  /// @throws NaNMass, NegativeMass, InfiniteMass, MassOutOfRange, NaNMoment, NegativeMoment, InfiniteMoment,
+  ///         MomentOutOfRange
+  /// MIS: newBody, bodyInit
+  Body(S mass, S moment);
+
+  /// A dynamic body at rest at the origin whose mass comes from its shapes.
+  Body() : Body(S(0), S(0)) {}
+
+  /// MIS: newStaticBody
+  static Body fixedInPlace();
+  /// A body that moves by its velocity alone.
+  static Body kinematic();
+  /// A dynamic body that no impulse turns; it takes the place of an infinite moment.
+  /// @throws as the constructor for mass
+  static Body nonRotating(S mass);
+
+  /// A copy that belongs to no Space.
+  Body detached() const;
+
+  /// The id its Space gave it; not valid() for a free body. MIS: bodyGetSpace
+  BodyId id() const { return id_; }
+  /// MIS: bodyGetType
+  BodyType type() const { return type_; }
+  bool isDynamic() const { return type_ == BodyType::dynamicBody; }
+  /// Whether contacts may turn it.
+  bool rotates() const { return rotates_ != 0; }
+
+  /// Turns a free body into another type. A static body loses its velocity; a dynamic one has the mass and
+  /// moment it was last given. For a body in a Space use Space::setType.
+  /// @throws AttachedBody
+  /// MIS: bodySetType
+  void setType(BodyType type);
+
+  /// kg. MIS: bodyGetMass
+  S mass() const { return isDynamic() ? mass_ : S(0); }
+  /// 1/kg, 0 where nothing moves it.
+  Scaled<S> inverseMass() const { return inverseMass_; }
+  /// kg m^2 about the centre of mass, saturated. MIS: bodyGetMoment
+  S moment() const;
+  /// The same at full range and precision.
+  Scaled<S> exactMoment() const { return isDynamic() ? moment_ : Scaled<S>{}; }
+  /// 1/(kg m^2), 0 where nothing turns it.
+  Scaled<S> inverseMoment() const { return inverseMoment_; }
+
+  /// @throws StaticBodyMass, NaNMass, NegativeMass, InfiniteMass, MassOutOfRange
+  /// MIS: bodySetMass
+  void setMass(S mass);
+  /// Also makes a body rotate that did not.
+  /// @throws StaticBodyMass, NaNMoment, NegativeMoment, InfiniteMoment, MomentOutOfRange
+  /// MIS: bodySetMoment
+  void setMoment(S moment);
+  /// Mass, moment and centre of mass at once, as a set of shapes gives them; the origin of the body stays
+  /// where it is. MIS: bodyAccumulateMassFromShapes (the body's part)
+  /// @throws IllegalBody when the sum is outside the supported range
+  void setMassProperties(const MassProperties<S>& properties);
+
+  /// The place of the body's origin, m. MIS: bodyGetPosition
+  Vector<S> position() const { return center_ - rotate(centerOfMass_, rotation_); }
+  /// The place of its centre of mass, m.
+  const Vector<S>& worldCenter() const { return center_; }
+  /// The centre of mass in body coordinates, m. MIS: bodyGetCenterOfMass
+  const Vector<S>& centerOfMass() const { return centerOfMass_; }
+  /// Of the centre of mass, m/s. MIS: bodyGetVelocity
+  const Vector<S>& velocity() const { return velocity_; }
+  /// Acts on the centre of mass in the next step, which clears it, N. MIS: bodyGetForce
+  const Vector<S>& force() const { return force_; }
+  /// rad. MIS: bodyGetAngle
+  S angle() const { return angle_; }
+  /// The unit vector (cos, sin) of the angle. MIS: bodyGetRotation
+  const Vector<S>& rotation() const { return rotation_; }
+  /// rad/s, counter-clockwise. MIS: bodyGetAngularVelocity
+  S angularVelocity() const { return angularVelocity_; }
+  /// N m; see force. MIS: bodyGetTorque
+  S torque() const { return torque_; }
+  /// From body to world coordinates.
+  Transform<S> transform() const { return Transform<S>::rigid(position(), rotation_); }
+
+  /// @throws IllegalBody outside the world
+  /// MIS: bodySetPosition
+  void setPosition(const Vector<S>& position);
+  /// Moves the centre of mass within the body; the body's origin stays in place.
+  /// @throws IllegalBody
+  /// MIS: bodySetCenterOfMass
+  void setCenterOfMass(const Vector<S>& center);
+  /// @throws IllegalBody above the speed limit, or for a moving static body
+  /// MIS: bodySetVelocity
+  void setVelocity(const Vector<S>& velocity);
+  /// @throws IllegalBody
+  /// MIS: bodySetForce
+  void setForce(const Vector<S>& force);
+  /// Turns about the body's origin, which stays in place.
+  /// @throws IllegalBody
+  /// MIS: bodySetAngle
+  void setAngle(S angle);
+  /// @throws IllegalBody
+  /// MIS: bodySetAngularVelocity
+  void setAngularVelocity(S angularVelocity);
+  /// @throws IllegalBody
+  /// MIS: bodySetTorque
+  void setTorque(S torque);
+
+  /// The number of the function that moves it. MIS: bodySetPositionFunc
+  void setPositionFunc(CallbackNumber number) { positionFunc_ = number; }
+  CallbackNumber positionFunc() const { return positionFunc_; }
+  /// The number of the function that changes its velocity. MIS: bodySetVelocityFunc
+  void setVelocityFunc(CallbackNumber number) { velocityFunc_ = number; }
+  CallbackNumber velocityFunc() const { return velocityFunc_; }
+
+  void setUserData(std::uint64_t data) { userData_ = data; }
+  std::uint64_t userData() const { return userData_; }
+
+  /// World from body coordinates and back.
+  Vector<S> toWorld(const Vector<S>& point) const { return transformPoint(transform(), point); }
+  Vector<S> toLocal(const Vector<S>& point) const { return unrotate(point - position(), rotation_); }
+  /// The velocity of the body's material at a point in world coordinates, m/s.
+  Vector<S> velocityAt(const Vector<S>& worldPoint) const;
+
+  /// An impulse in N s at a world point changes the velocities at once; they are held at the limits. Does
+  /// nothing to a body that is not dynamic.
+  /// @throws IllegalBody for an impulse that is not finite
+  void applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint);
+  /// A force in N at a world point is added to force and torque.
+  /// @throws IllegalBody where the sum is out of range
+  void applyForce(const Vector<S>& force, const Vector<S>& worldPoint);
+
+  /// Moves by its velocities for dt seconds, and forgets the bias velocities.
+  /// @throws IllegalBody where that leaves the world
+  /// MIS: bodyUpdatePosition
+  void updatePosition(S dt);
+  /// Gravity, force and torque for dt seconds; clears force and torque. Does nothing to a body that is not
+  /// dynamic.
+  /// @throws IllegalBody for a body without mass, or beyond the speed limits
+  /// MIS: bodyUpdateVelocity
+  void updateVelocity(const Vector<S>& gravity, S dt) { updateVelocity(gravity, S(1), dt); }
+  /// The same with the velocities first multiplied by `damping`, in [0, 1].
+  void updateVelocity(const Vector<S>& gravity, S damping, S dt);
+
+  /// (m v^2 + I w^2) / 2, J, saturated. MIS: bodyKineticEnergy
+  S kineticEnergy() const;
+
+  /// What the solver adds to the velocities only to push overlapping shapes apart, m/s and rad/s.
+  const Vector<S>& velocityBias() const { return velocityBias_; }
+  S angularVelocityBias() const { return angularVelocityBias_; }
+
+  /// What happened to a body whose values left their range.
+  enum class Held : std::uint8_t { no = 0, speed = 1, spin = 2, border = 4 };
+
+  /// Every field of the state, by name, in the order of the canonical encoding.
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("type", self.type_);
+    visit("rotates", self.rotates_);
+    visit("mass", self.mass_);
+    visit("moment", self.moment_);
+    visit("centerOfMass", self.centerOfMass_);
+    visit("center", self.center_);
+    visit("velocity", self.velocity_);
+    visit("force", self.force_);
+    visit("angle", self.angle_);
+    visit("angularVelocity", self.angularVelocity_);
+    visit("torque", self.torque_);
+    visit("velocityBias", self.velocityBias_);
+    visit("angularVelocityBias", self.angularVelocityBias_);
+    visit("positionFunc", self.positionFunc_);
+    visit("velocityFunc", self.velocityFunc_);
+    visit("userData", self.userData_);
+  }
+  /// Computes what follows from the fields.
+  void derive();
+
+ private:
+  friend class Space<S>;
+  template <Scalar>
+  friend class StepAccess;
+
+  // State.
+  Vector<S> center_{};
+  Vector<S> velocity_{};
+  Vector<S> velocityBias_{};
+  S angle_{};
+  S angularVelocity_{};
+  S angularVelocityBias_{};
+  Vector<S> force_{};
+  S torque_{};
+  S mass_{};
+  Scaled<S> moment_{};
+  Vector<S> centerOfMass_{};
+  std::uint64_t userData_ = 0;
+  CallbackNumber positionFunc_ = 0;
+  CallbackNumber velocityFunc_ = 0;
+  // Follows from the state.
+  Vector<S> rotation_{S(1), S(0)};
+  Scaled<S> inverseMass_{};
+  Scaled<S> inverseMoment_{};
+  // Which Space it belongs to, and as which object: given by the Space, not part of the state.
+  BodyId id_{};
+  std::uint32_t owner_ = 0;
+  BodyType type_ = BodyType::dynamicBody;
+  std::uint8_t rotates_ = 1;
+  std::uint16_t unused_ = 0;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class Body<double>;
+#endif
+extern template class Body<Fixed>;
+extern template class Body<CheckedFixed>;
+
+}  // namespace samestep

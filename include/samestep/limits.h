@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <samestep/scalar.h>
+#include <samestep/vector.h>
+
+namespace samestep {
+
+// The supported ranges, the same for every scalar. A caller's value outside them is refused; a value that
+// leaves them during a step is held at the limit and listed as an event.
+
+/// How far from the origin a body may be, metres, unless the Space says otherwise.
+template <Scalar S>
+inline constexpr S kDefaultWorldExtent = S(1 << 15);
+/// The largest extent a Space may ask for, metres.
+template <Scalar S>
+inline constexpr S kMaxWorldExtent = S(1 << 20);
+/// Of each component of a velocity, m/s.
+template <Scalar S>
+inline constexpr S kMaxSpeed = S(1 << 10);
+/// rad/s.
+template <Scalar S>
+inline constexpr S kMaxAngularSpeed = S(1 << 8);
+/// How far a body may have turned, rad: beyond it a turn is no longer resolved.
+template <Scalar S>
+inline constexpr S kMaxAngle = S(1 << 30);
+/// kg. A mass may also be 0: to be accumulated from shapes.
+template <Scalar S>
+inline constexpr S kMinMass = ratio<S>(1, 1000);
+template <Scalar S>
+inline constexpr S kMaxMass = S(1000000);
+/// kg m^2, as the caller may state it. Moments accumulated from shapes may be smaller.
+template <Scalar S>
+inline constexpr S kMinMoment = ratio<S>(1, 1 << 20);
+template <Scalar S>
+inline constexpr S kMaxMoment = S(1 << 30);
+/// Of each component of an acceleration, m/s^2.
+template <Scalar S>
+inline constexpr S kMaxAcceleration = S(1 << 15);
+/// Of each component of a force, N, and of a torque, N m.
+template <Scalar S>
+inline constexpr S kMaxForce = S(1 << 30);
+/// Seconds in one step.
+template <Scalar S>
+inline constexpr S kMaxTimeStep = S(1);
+
+/// Whether |x| <= limit; false for NaN.
+template <Scalar S>
+[[gnu::always_inline]] inline constexpr bool within(S x, S limit) {
+  return x >= -limit && x <= limit;
+}
+template <Scalar S>
+[[gnu::always_inline]] inline constexpr bool within(const Vector<S>& v, S limit) {
+  return within(v.x, limit) && within(v.y, limit);
+}
+
+}  // namespace samestep
