@@ -1,0 +1,136 @@
+#pragma once
+
+#include <concepts>
+#include <utility>
+
+#include "samestep/components.h"
+
+/// The functions of layer 0 on double. The fixed-point number has the same names, so everything above
+/// is written once. Each is one fixed sequence of IEEE-754 operations: the same bits from every compiler
+/// that neither contracts nor reorders them. The short ones are inlined without exception, so that no
+/// client's copy can take the place of the library's at link time; the long ones live in the library.
+///
+/// Outside their domain they follow IEEE-754 (infinities, one quiet NaN of fixed bits); the engine
+/// never calls them there.
+namespace samestep {
+
+/// a * b + c. Two roundings on double, one on Fixed.
+[[gnu::always_inline]] constexpr double mulAdd(double a, double b, double c) { return a * b + c; }
+
+/// a * b + c * d.
+[[gnu::always_inline]] constexpr double dot(double a, double b, double c, double d) { return a * b + c * d; }
+
+/// a * b - c * d.
+[[gnu::always_inline]] constexpr double cross(double a, double b, double c, double d) {
+  return a * b - c * d;
+}
+
+/// a0 * b0 + a1 * b1 + a2 * b2, from left to right.
+[[gnu::always_inline]] constexpr double dot3(double a0, double b0, double a1, double b1, double a2,
+                                             double b2) {
+  return a0 * b0 + a1 * b1 + a2 * b2;
+}
+
+/// a0 * b0 + a1 * b1 + a2 * b2 + a3 * b3, from left to right.
+[[gnu::always_inline]] constexpr double dot4(double a0, double b0, double a1, double b1, double a2, double b2,
+                                             double a3, double b3) {
+  return a0 * b0 + a1 * b1 + a2 * b2 + a3 * b3;
+}
+
+/// a * b / c.
+[[gnu::always_inline]] constexpr double mulDiv(double a, double b, double c) { return a * b / c; }
+
+/// 1 / x.
+[[gnu::always_inline]] constexpr double reciprocal(double x) { return 1.0 / x; }
+
+/// The square root, correctly rounded; 0 for a negative x.
+[[gnu::always_inline]] inline double sqrt(double x) { return x < 0.0 ? 0.0 : __builtin_sqrt(x); }
+
+/// Neither infinite nor NaN.
+[[gnu::always_inline]] constexpr bool isFinite(double x) {
+  return x >= -0x1.fffffffffffffp+1023 && x <= 0x1.fffffffffffffp+1023;
+}
+
+/// The absolute value: -x where x < 0, else x itself (so -0 stays).
+template <class S>
+[[gnu::always_inline]] constexpr S abs(S x) {
+  return x < S(0) ? -x : x;
+}
+
+/// The lesser; a where they are equal.
+template <class S>
+[[gnu::always_inline]] constexpr S min(S a, S b) {
+  return b < a ? b : a;
+}
+
+/// The greater; a where they are equal.
+template <class S>
+[[gnu::always_inline]] constexpr S max(S a, S b) {
+  return a < b ? b : a;
+}
+
+/// x held within [low, high], for low <= high.
+template <class S>
+[[gnu::always_inline]] constexpr S clamp(S x, S low, S high) {
+  return x < low ? low : (high < x ? high : x);
+}
+
+/// The length of (x, y), within 2 ulp; neither squares that overflow nor ones that vanish spoil it.
+double length(double x, double y);
+
+/// (x, y) / length(x, y); (0, 0) for (0, 0).
+Components<double> normalize(double x, double y);
+
+/// Sine and cosine of an angle in radians, each at most 1 ulp off for every finite angle.
+SinCos<double> sincos(double angle);
+
+/// The angle of the point (x, y), in (-pi, pi], with the signs IEEE-754 asks for at zeros; at most 1 ulp off.
+double atan2(double y, double x);
+
+/// e to the power x; at most 1 ulp off.
+double exp(double x);
+
+/// 2 to the power x; at most 1 ulp off, exact for whole x.
+double exp2(double x);
+
+/// The binary logarithm of x >= 0; at most 1 ulp off, exact for powers of two.
+double log2(double x);
+
+/// base >= 0 to the power exponent; at most 1 ulp off. pow(0, 0) = 1.
+double pow(double base, double exponent);
+
+/// a * b, for decisions. Exact on Fixed; plain on double.
+[[gnu::always_inline]] constexpr double exactProduct(double a, double b) { return a * b; }
+
+/// a * b + c * d, for decisions. Exact on Fixed; plain on double.
+[[gnu::always_inline]] constexpr double exactDot(double a, double b, double c, double d) {
+  return a * b + c * d;
+}
+
+/// a * b - c * d, for decisions. Exact on Fixed; plain on double.
+[[gnu::always_inline]] constexpr double exactCross(double a, double b, double c, double d) {
+  return a * b - c * d;
+}
+
+/// -1, 0 or 1.
+[[gnu::always_inline]] constexpr int sign(double w) { return (0.0 < w) - (w < 0.0); }
+
+/// The number a Wide or Scaled stands for: on double, itself.
+[[gnu::always_inline]] constexpr double toScalar(double w) { return w; }
+template <std::same_as<double> S>
+[[gnu::always_inline]] constexpr S toScalar(S w) {
+  return w;
+}
+
+/// The same number with room for masses and their inverses: on double, itself.
+[[gnu::always_inline]] constexpr double toScaled(double x) { return x; }
+
+/// What the exact products of two S are held in: 128 bits for Fixed, double for double.
+template <class S>
+using Wide = decltype(exactProduct(std::declval<S>(), std::declval<S>()));
+
+/// A number of huge range for masses and inverses: mantissa and exponent for Fixed, double for double.
+template <class S>
+using Scaled = decltype(toScaled(std::declval<S>()));
+
+}  // namespace samestep
