@@ -186,8 +186,8 @@ class Body {
   const Vector<S>& velocityBias() const { return velocityBias_; }
   S angularVelocityBias() const { return angularVelocityBias_; }
 
-  /// What happened to a body whose values left their range.
-  enum class Held : std::uint8_t { no = 0, speed = 1, spin = 2, border = 4 };
+  /// What had to be held at its limit, as bits.
+  enum Held : std::uint8_t { kHeldNothing = 0, kHeldSpeed = 1, kHeldSpin = 2, kHeldAtBorder = 4 };
 
   /// Every field of the state, by name, in the order of the canonical encoding.
   template <class Self, class Visitor>
@@ -214,8 +214,19 @@ class Body {
 
  private:
   friend class Space<S>;
-  template <Scalar>
-  friend class StepAccess;
+
+  /// The velocities after gravity, force and torque, unchecked.
+  struct Motion {
+    Vector<S> velocity;
+    S angularVelocity;
+  };
+  Motion accelerated(const Vector<S>& gravity, S damping, S dt) const;
+  /// Why the body cannot be stepped, or nullptr.
+  const char* cannotStep() const;
+  /// Takes the velocities, held at the limits; says what was held.
+  std::uint8_t holdVelocity(const Motion& motion);
+  /// Moves, held within `extent` metres of the origin; says what was held.
+  std::uint8_t holdPosition(S dt, S extent);
 
   // State.
   Vector<S> center_{};

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/body.h>
+#include <samestep/collision.h>
+#include <samestep/id.h>
+#include <samestep/shape.h>
+
+namespace samestep {
+
+/// MIS: MAX_CONTACTS_PER_ARBITER
+inline constexpr int kMaxContacts = 2;
+
+/// Where a pair of shapes stands. MIS: ArbiterState
+enum class ArbiterState : std::uint8_t {
+  apart = 0,           ///< The boxes overlap, the shapes have not touched yet.
+  firstCollision = 1,  ///< Touching since this step.
+  normal = 2,          ///< Touching for longer.
+  ignored = 3,         ///< Ignored until the shapes separate.
+  cached = 4,          ///< Touched lately; the impulses are kept for a while.
+};
+
+/// One contact point of a pair, as it is kept from step to step.
+template <Scalar S>
+struct Contact {
+  /// On the surface of each shape, world coordinates, when the shapes were last collided.
+  Vector<S> pointA{};
+  Vector<S> pointB{};
+  /// The accumulated impulses along the normal and its left perpendicular, as the change of speed they give
+  /// the lighter body, m/s: at full precision whatever the masses are.
+  S normalSpeed{};
+  S tangentSpeed{};
+  /// Which features touch: tells which point of the last step this one continues.
+  std::uint32_t feature = 0;
+  std::uint32_t unused = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("pointA", self.pointA);
+    visit("pointB", self.pointB);
+    visit("normalSpeed", self.normalSpeed);
+    visit("tangentSpeed", self.tangentSpeed);
+    visit("feature", self.feature);
+  }
+};
+
+/// The state of a pair of shapes whose boxes overlap: the lower id is a.
+template <Scalar S>
+struct Pair {
+  ShapeId a{};
+  ShapeId b{};
+  /// From a to b, a unit vector.
+  Vector<S> normal{};
+  Contact<S> contacts[kMaxContacts]{};
+  /// For this collision; see Arbiter's setters.
+  S elasticity{};
+  S friction{};
+  Vector<S> surfaceVelocity{};
+  /// The step in which the shapes last touched.
+  std::uint64_t stamp = 0;
+  /// Where the closest-feature search of the next step starts.
+  CollisionId collisionId = 0;
+  std::uint8_t count = 0;
+  ArbiterState state = ArbiterState::apart;
+  /// Whether this step solves it: touching, wanted by its callbacks, no sensor.
+  std::uint8_t solved = 0;
+  std::uint8_t unused = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("a", self.a);
+    visit("b", self.b);
+    visit("normal", self.normal);
+    visit("contact[0]", self.contacts[0]);
+    visit("contact[1]", self.contacts[1]);
+    visit("elasticity", self.elasticity);
+    visit("friction", self.friction);
+    visit("surfaceVelocity", self.surfaceVelocity);
+    visit("stamp", self.stamp);
+    visit("collisionId", self.collisionId);
+    visit("count", self.count);
+    visit("state", self.state);
+    visit("solved", self.solved);
+  }
+};
+
+/// What a contact looks like from outside. MIS: ContactPointSet
+template <Scalar S>
+struct ContactPointSet {
+  struct Point {
+    Vector<S> pointA{};  ///< On the surface of A, world coordinates.
+    Vector<S> pointB{};
+    S distance{};        ///< Along the normal; negative where the shapes overlap.
+  };
+  int count = 0;
+  Vector<S> normal{};
+  Point points[kMaxContacts]{};
+};
+
+/// Two touching shapes, as a callback sees them. MIS section 7.
+///
+/// Valid only during the callback or visit it was handed to. A and B are in the order of the handler's
+/// collision types, else in the order of their ids; the normal points from A to B.
+template <Scalar S>
+class Arbiter {
+ public:
+  Arbiter(Pair<S>& pair, Body<S>& bodyA, Body<S>& bodyB, const Shape<S>& shapeA, const Shape<S>& shapeB)
+      : pair_(pair), bodies_{&bodyA, &bodyB}, shapes_{&shapeA, &shapeB} {}
+
+  /// The shapes. MIS: arbiterGetShapes
+  ShapeId shapeA() const { return swapped_ ? pair_.b : pair_.a; }
+  ShapeId shapeB() const { return swapped_ ? pair_.a : pair_.b; }
+  const Shape<S>& shapeDataA() const { return *shapes_[swapped_ ? 1 : 0]; }
+  const Shape<S>& shapeDataB() const { return *shapes_[swapped_ ? 0 : 1]; }
+  /// The bodies. MIS: arbiterGetBodies
+  BodyId bodyA() const { return bodyDataA().id(); }
+  BodyId bodyB() const { return bodyDataB().id(); }
+  const Body<S>& bodyDataA() const { return *bodies_[swapped_ ? 1 : 0]; }
+  const Body<S>& bodyDataB() const { return *bodies_[swapped_ ? 0 : 1]; }
+
+  /// MIS: arbiterGetRestitution
+  S restitution() const { return pair_.elasticity; }
+  /// MIS: arbiterGetFriction
+  S friction() const { return pair_.friction; }
+  /// Of the surface of B against A, m/s. MIS: arbiterGetSurfaceVelocity
+  Vector<S> surfaceVelocity() const { return swapped_ ? -pair_.surfaceVelocity : pair_.surfaceVelocity; }
+  /// For this step only; the next collision computes it from the shapes again.
+  /// @throws NegativeElasticity, ValueOutOfRange
+  /// MIS: arbiterSetRestitution
+  void setRestitution(S restitution);
+  /// For this step only.
+  /// @throws NegativeFriction, ValueOutOfRange
+  /// MIS: arbiterSetFriction
+  void setFriction(S friction);
+  /// For this step only.
+  /// @throws ValueOutOfRange
+  /// MIS: arbiterSetSurfaceVelocity
+  void setSurfaceVelocity(const Vector<S>& velocity);
+
+  /// How many points touch: 1 or 2, or 0 in separate. MIS: arbiterGetCount
+  int count() const { return pair_.state == ArbiterState::cached ? 0 : pair_.count; }
+  /// From A to B, a unit vector. MIS: arbiterGetNormal
+  Vector<S> normal() const { return swapped_ ? -pair_.normal : pair_.normal; }
+  /// On the surface of A, world coordinates, m.
+  /// @throws ContactIndexOutOfBounds
+  /// MIS: arbiterGetPointA
+  Vector<S> pointA(int index) const;
+  /// @throws ContactIndexOutOfBounds
+  /// MIS: arbiterGetPointB
+  Vector<S> pointB(int index) const;
+  /// Along the normal, m; negative where the shapes overlap.
+  /// @throws ContactIndexOutOfBounds
+  /// MIS: arbiterGetDepth
+  S depth(int index) const;
+  /// MIS: arbiterGetContactPointSet
+  ContactPointSet<S> contactPointSet() const;
+  /// Replaces normal and points for this step.
+  /// @throws ImmutableNumContacts, ValueOutOfRange for a point out of the world or a normal that is no unit vector
+  /// MIS: arbiterSetContactPointSet
+  void setContactPointSet(const ContactPointSet<S>& set);
+
+  /// Whether the shapes began to touch in this step. MIS: arbiterIsFirstContact
+  bool isFirstContact() const { return pair_.state == ArbiterState::firstCollision; }
+  /// Whether separate is called because a shape is being removed. MIS: arbiterIsRemoval
+  bool isRemoval() const { return removal_; }
+  /// Lets the shapes pass through each other until they separate. Returns false, so that a callback can end
+  /// with it. MIS: arbiterIgnore
+  bool ignore() {
+    pair_.state = ArbiterState::ignored;
+    return false;
+  }
+  bool ignored() const { return pair_.state == ArbiterState::ignored; }
+
+  /// The impulse of the last step on B, friction included, N s, saturated. MIS: arbiterTotalImpulse
+  Vector<S> totalImpulse() const;
+  /// What the impulses of the last step took from the bodies' kinetic energy, J, saturated. MIS: arbiterTotalKE
+  S totalKE() const;
+
+  /// The state behind it.
+  const Pair<S>& pair() const { return pair_; }
+
+ private:
+  friend class Space<S>;
+
+  Pair<S>& pair_;
+  Body<S>* bodies_[2];
+  const Shape<S>* shapes_[2];
+  bool swapped_ = false;
+  bool removal_ = false;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class Arbiter<double>;
+#endif
+extern template class Arbiter<Fixed>;
+extern template class Arbiter<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <samestep/arbiter.h>
+#include <samestep/bb_tree.h>
+#include <samestep/body.h>
+#include <samestep/collision.h>
+#include <samestep/error.h>
+#include <samestep/id.h>
+#include <samestep/remark.h>
+#include <samestep/shape.h>
+#include <samestep/slot_map.h>
+
+namespace samestep {
+
+/// Changes whenever any result of a step changes. Every snapshot and recording carries it.
+inline constexpr std::uint32_t kSimulationRevision = 1;
+
+/// What the MIS calls the state variables of a Space that a user sets.
+template <Scalar S>
+struct Settings {
+  /// How often all contacts are solved in a step, 1 to 1000.
+  std::int32_t iterations = 10;
+  /// For how many steps a contact that came apart keeps its impulses.
+  std::uint32_t collisionPersistence = 3;
+  /// m/s^2
+  Vector<S> gravity{};
+  /// What is left of every velocity after one second without forces, in [0, 1].
+  S damping{1};
+  /// How far shapes may overlap without being pushed apart, m.
+  S collisionSlop = ratio<S>(1, 200);
+  /// What is left of an overlap after one second, in [0, 1].
+  S collisionBias = ratio<S>(1797010, 1000000000);
+  /// Bodies are held within this distance of the origin along each axis, m.
+  S worldExtent = kDefaultWorldExtent<S>;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("iterations", self.iterations);
+    visit("collisionPersistence", self.collisionPersistence);
+    visit("gravity", self.gravity);
+    visit("damping", self.damping);
+    visit("collisionSlop", self.collisionSlop);
+    visit("collisionBias", self.collisionBias);
+    visit("worldExtent", self.worldExtent);
+  }
+};
+
+/// What a collision handler does. A null function does what the wildcard handlers of both shapes do, or
+/// nothing. begin and preSolve answer whether the shapes shall collide: begin for as long as they touch,
+/// preSolve for this step.
+template <Scalar S>
+struct CollisionHandler {
+  bool (*begin)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
+  bool (*preSolve)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
+  void (*postSolve)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
+  void (*separate)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
+  void* data = nullptr;
+};
+
+/// Which collisions a handler is for, and the number its functions are registered under.
+struct HandlerBinding {
+  enum class Kind : std::uint8_t { pair = 0, wildcard = 1, fallback = 2 };
+  CollisionType typeA = 0;
+  CollisionType typeB = 0;
+  CallbackNumber number = 0;
+  Kind kind = Kind::pair;
+  std::uint8_t unused[3] = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("typeA", self.typeA);
+    visit("typeB", self.typeB);
+    visit("number", self.number);
+    visit("kind", self.kind);
+  }
+};
+
+/// A value that had to be held at its limit during the last step.
+struct RangeEvent {
+  BodyId body;
+  std::uint8_t held = 0;  ///< Bits of Body::Held.
+};
+
+/// The stages of a step, in their order.
+enum class Stage : std::uint8_t {
+  integratePositions,
+  updateShapes,
+  findPairs,
+  collide,
+  preStep,
+  integrateVelocities,
+  solve,
+  callbacks,
+};
+const char* stageName(Stage stage);
+
+/// Everything the future of a world depends on: hashed, saved, portable.
+template <Scalar S>
+struct WorldState {
+  Settings<S> settings{};
+  /// Steps made so far.
+  std::uint64_t stamp = 0;
+  /// Seconds of the last step; 0 before the first.
+  S timeStep{};
+  BodyId staticBody{};
+  SlotMap<Body<S>, BodyId> bodies;
+  SlotMap<Shape<S>, ShapeId> shapes;
+  /// Sorted by (a, b).
+  std::vector<Pair<S>> pairs;
+  /// Sorted by (kind, typeA, typeB).
+  std::vector<HandlerBinding> handlers;
+};
+
+/// A world kept in memory, by Space::save. Reusing one makes saving free of allocation.
+template <Scalar S>
+class SavedSpace {
+ public:
+  /// The step it was saved after.
+  std::uint64_t stamp() const { return state_.stamp; }
+
+ private:
+  friend class Space<S>;
+  WorldState<S> state_;
+  std::uint32_t owner_ = 0;
+};
+
+/// A point query's answer.
+template <Scalar S>
+struct PointHit {
+  ShapeId shape{};
+  Vector<S> point{};     ///< Nearest point of the shape's surface, m.
+  S distance{};          ///< From the surface, m; negative inside.
+  Vector<S> gradient{};  ///< Unit vector in which the distance grows.
+};
+
+/// A segment query's answer.
+template <Scalar S>
+struct SegmentHit {
+  ShapeId shape{};
+  Vector<S> point{};   ///< Where it hits, m.
+  Vector<S> normal{};  ///< Of the surface hit, a unit vector.
+  S alpha{};           ///< How far along the segment, in [0, 1].
+};
+
+/// A world: bodies, shapes and their collisions, stepped in equal steps. MIS section 6.
+///
+/// Bodies and shapes are added by value and named by ids. What is iterated or reported comes in the order of
+/// ids. While a step or a query runs the Space is locked: what would add, remove or replace objects throws
+/// SpaceLocked; addPostStepCallback defers it.
+template <Scalar S>
+class Space {
+ public:
+  using PositionFunc = void (*)(Body<S>& body, S dt, void* data);
+  using VelocityFunc = void (*)(Body<S>& body, const Vector<S>& gravity, S damping, S dt, void* data);
+  using PostStepFunc = void (*)(Space& space, std::uint64_t key, void* data);
+  using StageObserver = void (*)(const Space& space, Stage stage, void* data);
+
+  /// An empty world with one static body. MIS: spaceNew, spaceInit
+  Space();
+  ~Space();
+  Space(const Space&) = delete;
+  Space& operator=(const Space&) = delete;
+
+  // Settings.
+
+  const Settings<S>& settings() const { return state_.settings; }
+  /// MIS: spaceGetIterations
+  int iterations() const { return state_.settings.iterations; }
+  /// MIS: spaceGetGravity
+  const Vector<S>& gravity() const { return state_.settings.gravity; }
+  S damping() const { return state_.settings.damping; }
+  /// MIS: spaceGetCollisionSlop
+  S collisionSlop() const { return state_.settings.collisionSlop; }
+  /// MIS: spaceGetCollisionBias
+  S collisionBias() const { return state_.settings.collisionBias; }
+  /// MIS: spaceGetCollisionPersistence
+  std::uint32_t collisionPersistence() const { return state_.settings.collisionPersistence; }
+  S worldExtent() const { return state_.settings.worldExtent; }
+  /// Seconds of the last step, 0 before the first. MIS: spaceGetCurrentTimeStep
+  S currentTimeStep() const { return state_.timeStep; }
+  /// Steps made so far.
+  std::uint64_t stamp() const { return state_.stamp; }
+
+  /// @throws InvalidIter outside [1, 1000]
+  /// MIS: spaceSetIterations
+  void setIterations(int iterations);
+  /// @throws ValueOutOfRange
+  /// MIS: spaceSetGravity
+  void setGravity(const Vector<S>& gravity);
+  /// @throws ValueOutOfRange outside [0, 1]
+  void setDamping(S damping);
+  /// @throws ValueOutOfRange outside [0, 2^8]
+  /// MIS: spaceSetCollisionSlop
+  void setCollisionSlop(S slop);
+  /// @throws ValueOutOfRange outside [0, 1]
+  /// MIS: spaceSetCollisionBias
+  void setCollisionBias(S bias);
+  /// MIS: spaceSetCollisionPersistence
+  void setCollisionPersistence(std::uint32_t steps);
+  /// @throws ValueOutOfRange outside (0, 2^20]
+  void setWorldExtent(S extent);
+
+  // Bodies and shapes.
+
+  /// The body for things that never move, always there. MIS: spaceGetStaticBody
+  BodyId staticBody() const { return state_.staticBody; }
+  /// Replaces it by a copy of a free static body.
+  /// @throws AttachedStaticBody while the old one has shapes; AttachedBody; IllegalBody if it is not static;
+  ///         SpaceLocked
+  /// MIS: spaceSetStaticBody
+  BodyId setStaticBody(const Body<S>& body);
+
+  /// Takes in a copy.
+  /// @throws DuplicateBody, AttachedBody, SpaceLocked; IllegalBody outside the world extent
+  /// MIS: spaceAddBody
+  BodyId add(const Body<S>& body);
+  /// Takes in a copy, on the body the shape names; a shape with mass adds it to a dynamic body.
+  /// @throws DuplicateShape, AttachedShape, BodyNotFound, IllegalBody, SizeOutOfRange, SpaceLocked
+  /// MIS: spaceAddShape, bodyAddShape
+  ShapeId add(const Shape<S>& shape);
+  /// @throws BodyNotFound, MainStaticBody, BodyHasShapes, SpaceLocked
+  /// MIS: spaceRemoveBody
+  void remove(BodyId id);
+  /// Calls separate for what it touches; a shape with mass takes it from a dynamic body.
+  /// @throws ShapeNotFound, SpaceLocked
+  /// MIS: spaceRemoveShape, bodyRemoveShape
+  void remove(ShapeId id);
+  /// A body with all its shapes.
+  /// @throws as the two
+  void removeWithShapes(BodyId id);
+
+  /// MIS: spaceContainsBody
+  bool contains(BodyId id) const { return state_.bodies.contains(id); }
+  /// MIS: spaceContainsShape
+  bool contains(ShapeId id) const { return state_.shapes.contains(id); }
+
+  /// A short-lived reference: the next add, remove or restore invalidates it.
+  /// @throws BodyNotFound
+  Body<S>& body(BodyId id);
+  const Body<S>& body(BodyId id) const;
+  /// @throws ShapeNotFound
+  const Shape<S>& shape(ShapeId id) const;
+  /// Replaces a shape, all or nothing; it keeps its id and body. Mass follows.
+  /// @throws ShapeNotFound, IllegalBody, SizeOutOfRange, SpaceLocked for a change of geometry or mass
+  void replace(ShapeId id, const Shape<S>& shape);
+  /// Changes a shape: `change(id, [](Shape<S>& shape) { shape.setFriction(f); })`. All or nothing.
+  template <class Change>
+  void change(ShapeId id, Change&& apply) {
+    Shape<S> copy = shape(id);
+    apply(copy);
+    replace(id, copy);
+  }
+  /// @throws BodyNotFound, SpaceLocked
+  /// MIS: bodySetType
+  void setType(BodyId id, BodyType type);
+  /// Sets mass, moment and centre of mass of a dynamic body to those of its shapes that have mass.
+  /// @throws BodyNotFound, IllegalBody
+  /// MIS: bodyAccumulateMassFromShapes
+  void accumulateMassFromShapes(BodyId id);
+
+  std::uint32_t bodyCount() const { return state_.bodies.size(); }
+  std::uint32_t shapeCount() const { return state_.shapes.size(); }
+
+  /// Calls visit(const Body<S>&) for each body by rising id. Locks the Space. MIS: spaceEachBody
+  template <class Visit>
+  void eachBody(Visit&& visit) {
+    const LockGuard guard(*this);
+    state_.bodies.each([&](BodyId, Body<S>& body) { visit(body); });
+  }
+  template <class Visit>
+  void eachBody(Visit&& visit) const {
+    state_.bodies.each([&](BodyId, const Body<S>& body) { visit(body); });
+  }
+  /// Calls visit(const Shape<S>&) for each shape by rising id. Locks the Space. MIS: spaceEachShape
+  template <class Visit>
+  void eachShape(Visit&& visit) const {
+    state_.shapes.each([&](ShapeId, const Shape<S>& shape) { visit(shape); });
+  }
+  /// Calls visit(const Shape<S>&) for each shape of a body by rising id.
+  /// @throws BodyNotFound
+  /// MIS: bodyEachShape
+  template <class Visit>
+  void eachShape(BodyId id, Visit&& visit) const {
+    for (const std::uint32_t index : shapesOf(id)) visit(state_.shapes.valueAt(index));
+  }
+  /// Calls visit(Arbiter<S>&) for each touching pair of shapes, by rising ids. Locks the Space.
+  template <class Visit>
+  void eachArbiter(Visit&& visit) {
+    const LockGuard guard(*this);
+    for (Pair<S>& pair : state_.pairs) {
+      if (!touching(pair)) continue;
+      Arbiter<S> arbiter = arbiterOf(pair);
+      visit(arbiter);
+    }
+  }
+  /// The same for those of one body, which is each arbiter's A or B as its ids say. O(its pairs) after the
+  /// first call of a step.
+  /// @throws BodyNotFound
+  /// MIS: bodyEachArbiter, arbiterNext, arbiterThreadForBody
+  template <class Visit>
+  void eachArbiter(BodyId id, Visit&& visit) {
+    const std::span<const std::uint32_t> thread = threadOf(id);
+    const LockGuard guard(*this);
+    for (const std::uint32_t index : thread) {
+      Arbiter<S> arbiter = arbiterOf(state_.pairs[index]);
+      visit(arbiter);
+    }
+  }
+
+  // Collision handlers. Functions are wiring, registered under a number; the binding of collision types to a
+  // number is state, saved and hashed.
+
+  /// Registers functions under a number other than 0, or changes them.
+  /// @throws ValueOutOfRange for 0
+  void registerHandler(CallbackNumber number, const CollisionHandler<S>& handler);
+  void registerPositionFunc(CallbackNumber number, PositionFunc function, void* data = nullptr);
+  void registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data = nullptr);
+
+  /// For shapes of these two types, A and B in this order.
+  /// @throws MissingCallback, SpaceLocked
+  /// MIS: spaceAddCollisionHandler
+  void addCollisionHandler(CollisionType typeA, CollisionType typeB, CallbackNumber number);
+  /// For shapes of this type, as A, with any other, where no handler of the pair takes over.
+  /// @throws MissingCallback, SpaceLocked
+  /// MIS: spaceAddWildcardHandler
+  void addWildcardHandler(CollisionType type, CallbackNumber number);
+  /// For pairs without a handler of their own; in place of the wildcards.
+  /// @throws MissingCallback, SpaceLocked
+  /// MIS: spaceAddDefaultCollisionHandler
+  void addDefaultCollisionHandler(CallbackNumber number);
+
+  /// What the wildcard handler of one of the shapes says, for a handler that wants to pass a call on.
+  /// MIS: arbiterCallWildcardBeginA
+  bool callWildcardBeginA(Arbiter<S>& arbiter);
+  /// MIS: arbiterCallWildcardBeginB
+  bool callWildcardBeginB(Arbiter<S>& arbiter);
+  /// MIS: arbiterCallWildcardPreSolveA
+  bool callWildcardPreSolveA(Arbiter<S>& arbiter);
+  /// MIS: arbiterCallWildcardPreSolveB
+  bool callWildcardPreSolveB(Arbiter<S>& arbiter);
+  /// MIS: arbiterCallWildcardPostSolveA
+  void callWildcardPostSolveA(Arbiter<S>& arbiter);
+  /// MIS: arbiterCallWildcardPostSolveB
+  void callWildcardPostSolveB(Arbiter<S>& arbiter);
+  /// MIS: arbiterCallWildcardSeparateA
+  void callWildcardSeparateA(Arbiter<S>& arbiter);
+  /// MIS: arbiterCallWildcardSeparateB
+  void callWildcardSeparateB(Arbiter<S>& arbiter);
+
+  /// Runs after the step or query that is under way, or at once if there is none; once per key until then:
+  /// false if the key is waiting already. Callbacks run in the order they were added.
+  bool addPostStepCallback(PostStepFunc function, std::uint64_t key, void* data = nullptr);
+
+  // Stepping.
+
+  /// One step of dt seconds, in (0, 1].
+  /// @throws SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
+  ///         MissingCallback for a number without function
+  /// MIS: spaceStep
+  void step(S dt);
+
+  /// Whether a step, query or visit is under way. MIS: spaceIsLocked
+  bool isLocked() const { return locked_ > 0; }
+  /// MIS: spaceLock
+  void lock() { ++locked_; }
+  /// The last unlock runs the post-step callbacks if `runPostStep`.
+  /// @throws SpaceLockUnderflow
+  /// MIS: spaceUnlock
+  void unlock(bool runPostStep);
+
+  /// What was held at its limit during the last step, by body id.
+  std::span<const RangeEvent> rangeEvents() const { return rangeEvents_; }
+  /// Iteration limits reached and the like.
+  const CollisionStats& collisionStats() const { return collisionStats_; }
+  /// Called after each stage of a step; nullptr for none, which costs nothing.
+  void setStageObserver(StageObserver observer, void* data = nullptr);
+
+  /// Moves the trees after a static body was moved by hand. The step does it by itself.
+  /// @throws SpaceLocked
+  /// MIS: spaceReindexStatic
+  void reindexStatic();
+  /// @throws ShapeNotFound, SpaceLocked
+  /// MIS: spaceReindexShape
+  void reindexShape(ShapeId id);
+  /// @throws BodyNotFound, SpaceLocked
+  /// MIS: spaceReindexShapesForBody
+  void reindexShapesForBody(BodyId id);
+  /// Forgets what touches a body, or only the given shape of it, as if it never had; separate is called.
+  /// @throws BodyNotFound, ShapeNotFound, SpaceLocked
+  /// MIS: spaceFilterArbiters
+  void filterArbiters(BodyId body, ShapeId shape = {});
+
+  // Queries, answered by rising shape id. A shape is considered if its filter and the query's accept each
+  // other. They see the poses as they are now.
+
+  /// The shapes within `distance` metres of a point; sensors included.
+  void pointQuery(const Vector<S>& point, S distance, const ShapeFilter& filter, std::vector<PointHit<S>>& hits);
+  /// The shapes that a segment of a radius touches.
+  void segmentQuery(const Vector<S>& start, const Vector<S>& end, S radius, const ShapeFilter& filter,
+                    std::vector<SegmentHit<S>>& hits);
+  /// The shapes whose boxes overlap a box.
+  void boxQuery(const BB<S>& box, const ShapeFilter& filter, std::vector<ShapeId>& hits);
+  /// The box around a shape at its body's pose. MIS: shapeCacheBB, shapeGetBB
+  BB<S> boundingBox(ShapeId id);
+
+  // State.
+
+  /// XXH3-64 over the canonical little-endian encoding of the state.
+  std::uint64_t hash() const;
+  std::uint64_t hash(BodyId id) const;
+  std::uint64_t hash(ShapeId id) const;
+  const WorldState<S>& state() const { return state_; }
+
+  /// Copies the world into memory; callbacks waiting and functions registered are not part of it.
+  /// @throws SpaceLocked
+  void save(SavedSpace<S>& into) const;
+  SavedSpace<S> save() const;
+  /// Brings back a saved world, as often as wanted, also one of another Space. It continues exactly as the
+  /// original did.
+  /// @throws SpaceLocked; MissingCallback if this Space lacks a number the world uses
+  void restore(const SavedSpace<S>& saved);
+  /// Takes over a state that has been validated: see samestep/state.h.
+  void adopt(WorldState<S>&& state);
+  /// Forgets everything that can be computed again. Changes no result.
+  /// @throws SpaceLocked
+  void dropCache();
+
+ private:
+  class LockGuard {
+   public:
+    explicit LockGuard(Space& space) : space_(space) { space_.lock(); }
+    ~LockGuard() { --space_.locked_; }
+    LockGuard(const LockGuard&) = delete;
+    LockGuard& operator=(const LockGuard&) = delete;
+
+   private:
+    Space& space_;
+  };
+  struct Impl;
+
+  void requireUnlocked() const;
+  std::span<const std::uint32_t> shapesOf(BodyId id) const;
+  std::span<const std::uint32_t> threadOf(BodyId id);
+  bool touching(const Pair<S>& pair) const;
+  Arbiter<S> arbiterOf(Pair<S>& pair);
+
+  WorldState<S> state_;
+  Impl* impl_;
+  std::vector<RangeEvent> rangeEvents_;
+  CollisionStats collisionStats_{};
+  std::int32_t locked_ = 0;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class Space<double>;
+#endif
+extern template class Space<Fixed>;
+extern template class Space<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include <samestep/id.h>
+#include <samestep/vector.h>
+
+namespace samestep {
+
+/// Turns fields into their canonical little-endian bytes. `Sink` has `std::uint8_t* reserve(unsigned size)`,
+/// which answers room for that many bytes, at most 8.
+template <class Sink>
+class CanonicalWriter {
+ public:
+  explicit CanonicalWriter(Sink& sink) : sink_(sink) {}
+
+  template <class T>
+  void operator()(const char*, const T& value) {
+    put(value);
+  }
+
+  void put(std::uint8_t value) { store<1>(value); }
+  void put(std::uint16_t value) { store<2>(value); }
+  void put(std::uint32_t value) { store<4>(value); }
+  void put(std::int32_t value) { store<4>(static_cast<std::uint32_t>(value)); }
+  void put(std::uint64_t value) { store<8>(value); }
+  void put(std::int64_t value) { store<8>(static_cast<std::uint64_t>(value)); }
+  void put(double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    store<8>(bits);
+  }
+  template <class Overflow>
+  void put(const BasicFixed<std::int64_t, 32, Overflow>& value) {
+    put(value.raw());
+  }
+  template <Scalar S>
+  void put(const Vector<S>& value) {
+    put(value.x);
+    put(value.y);
+  }
+  template <class Tag>
+  void put(const Id<Tag>& value) {
+    put(value.index);
+    put(value.generation);
+  }
+  template <class T>
+    requires std::is_enum_v<T>
+  void put(T value) {
+    put(static_cast<std::underlying_type_t<T>>(value));
+  }
+  /// A number with mantissa and exponent.
+  template <class T>
+    requires requires(const T& t) { t.mantissa(); t.exponent(); }
+  void put(const T& value) {
+    put(value.mantissa());
+    put(value.exponent());
+  }
+  /// A record with fields of its own.
+  template <class T>
+    requires requires(const T& t, CanonicalWriter& w) { T::fields(t, w); }
+  void put(const T& value) {
+    T::fields(value, *this);
+  }
+
+ private:
+  template <unsigned kSize>
+  void store(std::uint64_t value) {
+    std::uint8_t* to = sink_.reserve(kSize);
+    for (unsigned i = 0; i < kSize; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  }
+
+  Sink& sink_;
+};
+
+/// Writes a whole world: settings, clock, bodies, shapes, pairs, handlers; each list with its length.
+template <class Sink, class World>
+void writeWorld(Sink& sink, const World& world) {
+  CanonicalWriter<Sink> write(sink);
+  write.put(world.settings);
+  write.put(world.stamp);
+  write.put(world.timeStep);
+  write.put(world.staticBody);
+  const auto slots = [&](const auto& map) {
+    write.put(map.slots());
+    for (std::uint32_t i = 0; i < map.slots(); ++i) {
+      write.put(map.generationAt(i));
+      if (map.aliveAt(i)) write.put(map.valueAt(i));
+    }
+    write.put(static_cast<std::uint32_t>(map.freeList().size()));
+    for (const std::uint32_t index : map.freeList()) write.put(index);
+  };
+  slots(world.bodies);
+  slots(world.shapes);
+  write.put(static_cast<std::uint64_t>(world.pairs.size()));
+  for (const auto& pair : world.pairs) write.put(pair);
+  write.put(static_cast<std::uint64_t>(world.handlers.size()));
+  for (const auto& binding : world.handlers) write.put(binding);
+}
+
+}  // namespace samestep
