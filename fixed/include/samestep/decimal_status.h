@@ -5,10 +5,10 @@ namespace samestep {
 /// What parseDecimal made of its text. Anything but `ok` leaves the output as it was.
 enum class DecimalStatus : unsigned char {
   ok,
-  empty,         ///< no characters at all
-  notANumber,    ///< not [+-] digits [. digits] [e [+-] digits]
-  outOfRange,    ///< a number that rounds to none of the type's
-  tooLong,       ///< more than kMaxDecimalLength characters
+  empty,       ///< no characters at all
+  notANumber,  ///< not [+-] digits [. digits] [e [+-] digits]
+  outOfRange,  ///< a number that rounds to none of the type's
+  tooLong,     ///< more than kMaxDecimalLength characters
 };
 
 /// The longest text that parseDecimal reads, in characters.
