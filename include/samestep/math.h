@@ -1,9 +1,8 @@
 #pragma once
 
 #include <concepts>
-#include <utility>
 
-#include "samestep/components.h"
+#include "samestep/scalar_results.h"
 
 /// The functions of layer 0 on double. The fixed-point number has the same names, so everything above
 /// is written once. Each is one fixed sequence of IEEE-754 operations: the same bits from every compiler
@@ -124,13 +123,5 @@ template <std::same_as<double> S>
 
 /// The same number with room for masses and their inverses: on double, itself.
 [[gnu::always_inline]] constexpr double toScaled(double x) { return x; }
-
-/// What the exact products of two S are held in: 128 bits for Fixed, double for double.
-template <class S>
-using Wide = decltype(exactProduct(std::declval<S>(), std::declval<S>()));
-
-/// A number of huge range for masses and inverses: mantissa and exponent for Fixed, double for double.
-template <class S>
-using Scaled = decltype(toScaled(std::declval<S>()));
 
 }  // namespace samestep

@@ -1,0 +1,246 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+
+#include "samestep/way.h"
+
+/// The algebra on raw bits, once for every way. Rounding is to nearest, ties to even, everywhere.
+namespace samestep::raw {
+
+/// |x| as an unsigned number, also of the lowest.
+constexpr std::uint64_t magnitude(std::int64_t x) {
+  return x < 0 ? 0 - static_cast<std::uint64_t>(x) : static_cast<std::uint64_t>(x);
+}
+
+struct FromDouble {
+  std::int64_t raw;
+  bool fits;
+};
+
+/// value * 2^bits to nearest, from the bits of the double: no floating arithmetic that flags could change.
+constexpr FromDouble fromDouble(double value, int bits, std::int64_t least, std::int64_t most) {
+  const auto pattern = std::bit_cast<std::uint64_t>(value);
+  const bool negative = pattern >> 63 != 0;
+  const int biased = static_cast<int>(pattern >> 52 & 0x7ff);
+  const std::uint64_t fraction = pattern & ((std::uint64_t{1} << 52) - 1);
+  if (biased == 0x7ff && fraction != 0) return {0, false};
+  const std::uint64_t mantissa = biased == 0 ? fraction : fraction | std::uint64_t{1} << 52;
+  const int shift = (biased == 0 ? 1 : biased) - 1075 + bits;
+  std::uint64_t size = 0;
+  if (shift > 11) {
+    if (mantissa != 0) return {negative ? least : most, false};
+  } else if (shift >= 0) {
+    size = mantissa << shift;
+  } else if (shift >= -54) {
+    const int down = -shift;
+    const std::uint64_t floor = mantissa >> down;
+    const std::uint64_t rest = mantissa - (floor << down);
+    const std::uint64_t half = std::uint64_t{1} << (down - 1);
+    size = floor + (rest > half || (rest == half && (floor & 1) != 0) ? 1 : 0);
+  }
+  const std::uint64_t limit = negative ? magnitude(least) : magnitude(most);
+  if (size > limit) return {negative ? least : most, false};
+  return {static_cast<std::int64_t>(negative ? 0 - size : size), true};
+}
+
+/// A sum of products of raw numbers, in units of 2^-2bits modulo 2^(64+bits) or more, rounded once.
+template <class Way, int kBits>
+using ProductSum = way::Sum<typename Way::Words, kBits>;
+
+/// The same sum without the modulus, to learn whether it fits.
+template <int kBits>
+class ExactSum {
+ public:
+  constexpr void plus(std::int64_t a, std::int64_t b) {
+    const Halves product = way::PortableWords::multiplySigned(a, b);
+    floors_ = floors_ + shiftedDown(product);
+    rests_ += product.low & kMask;
+  }
+  constexpr void minus(std::int64_t a, std::int64_t b) {
+    const Halves product = Halves{} - way::PortableWords::multiplySigned(a, b);
+    floors_ = floors_ + shiftedDown(product);
+    rests_ += product.low & kMask;
+  }
+  constexpr void plus(std::int64_t c) { floors_ = floors_ + extended(c); }
+
+  /// Whether the rounded sum lies in [least, most].
+  constexpr bool fits(std::int64_t least, std::int64_t most) const {
+    const Halves floor = floors_ + Halves{0, rests_ >> kBits};
+    const std::uint64_t rest = rests_ & kMask;
+    const std::uint64_t half = kBits == 0 ? 1 : (kMask >> 1) + 1;
+    const bool up = rest > half || (rest == half && (floor.low & 1) != 0);
+    const Halves rounded = floor + Halves{0, up ? 1u : 0u};
+    return biased(rounded) >= biased(extended(least)) && biased(rounded) <= biased(extended(most));
+  }
+
+ private:
+  static constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+
+  static constexpr Halves extended(std::int64_t x) {
+    return {static_cast<std::uint64_t>(x >> 63), static_cast<std::uint64_t>(x)};
+  }
+  static constexpr Halves shiftedDown(Halves x) {
+    const Halves shifted = x >> kBits;
+    const auto high = static_cast<std::uint64_t>(static_cast<std::int64_t>(x.high) >> kBits);
+    return {high, shifted.low};
+  }
+  /// Order of two's complement as order of unsigned.
+  static constexpr Halves biased(Halves x) { return {x.high ^ std::uint64_t{1} << 63, x.low}; }
+
+  Halves floors_;
+  std::uint64_t rests_ = 0;
+};
+
+struct Quotient {
+  std::int64_t raw;
+  bool fits;
+};
+
+/// high:low / divisor to nearest, ties to even, with a sign; saturates to [least, most].
+template <class Way>
+constexpr Quotient roundedQuotient(std::uint64_t high, std::uint64_t low, std::uint64_t divisor,
+                                   bool negative, std::int64_t least, std::int64_t most) {
+  // Also where the divisor is 0. Guards the division from a quotient of more than 64 bits.
+  if (high >= divisor) [[unlikely]] {
+    if (divisor == 0 && high == 0 && low == 0) return {0, false};
+    return {negative ? least : most, false};
+  }
+  const QuotientRemainder result = Way::Divide::divide(high, low, divisor);
+  const std::uint64_t left = divisor - result.remainder;
+  const std::uint64_t up = result.remainder + (result.quotient & 1) > left ? 1 : 0;
+  const std::uint64_t limit = magnitude(negative ? least : most);
+  if (result.quotient >= limit) [[unlikely]] {
+    const bool fits = result.quotient == limit && up == 0;
+    return {negative ? least : most, fits};
+  }
+  const std::uint64_t size = result.quotient + up;
+  return {static_cast<std::int64_t>(negative ? 0 - size : size), true};
+}
+
+/// a 2^kShift / b.
+template <class Way, int kShift>
+constexpr Quotient divide(std::int64_t a, std::int64_t b, std::int64_t least, std::int64_t most) {
+  const std::uint64_t n = magnitude(a);
+  if constexpr (kShift > 64) {
+    // Only for reciprocals, where a is 1.
+    return roundedQuotient<Way>(n << (kShift - 64), 0, magnitude(b), (a < 0) != (b < 0), least, most);
+  } else {
+    const std::uint64_t high = kShift == 64 ? n : kShift == 0 ? 0 : n >> (64 - kShift) % 64;
+    const std::uint64_t low = kShift == 64 ? 0 : n << kShift % 64;
+    return roundedQuotient<Way>(high, low, magnitude(b), (a < 0) != (b < 0), least, most);
+  }
+}
+
+/// a b / c.
+template <class Way>
+constexpr Quotient mulDiv(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t least,
+                          std::int64_t most) {
+  using Words = typename Way::Words;
+  const auto product = Words::multiply(magnitude(a), magnitude(b));
+  return roundedQuotient<Way>(Words::high(product), Words::low(product), magnitude(c),
+                              ((a < 0) != (b < 0)) != (c < 0), least, most);
+}
+
+/// The root of high:low to nearest; never a tie.
+template <class Way>
+constexpr std::uint64_t roundedRoot(std::uint64_t high, std::uint64_t low) {
+  using Words = typename Way::Words;
+  const std::uint64_t root = Way::Root::floorRoot(high, low);
+  const auto rest = Words::make(high, low) - Words::multiply(root, root);
+  return root + (rest > Words::make(0, root) ? 1 : 0);
+}
+
+/// sqrt(x / 2^kBits) in units of 2^-kBits; 0 for a negative x.
+template <class Way, int kBits>
+constexpr std::int64_t squareRoot(std::int64_t x) {
+  if (x <= 0) return 0;
+  const auto n = static_cast<std::uint64_t>(x);
+  const std::uint64_t high = kBits == 0 ? 0 : n >> (64 - kBits) % 64;
+  return static_cast<std::int64_t>(roundedRoot<Way>(high, n << kBits));
+}
+
+/// sqrt(x^2 + y^2); saturates to `most`.
+template <class Way>
+constexpr Quotient length(std::int64_t x, std::int64_t y, std::int64_t most) {
+  using Words = typename Way::Words;
+  const auto square =
+      Words::multiply(magnitude(x), magnitude(x)) + Words::multiply(magnitude(y), magnitude(y));
+  const std::uint64_t root = roundedRoot<Way>(Words::high(square), Words::low(square));
+  if (root > magnitude(most)) return {most, false};
+  return {static_cast<std::int64_t>(root), true};
+}
+
+/// Whether (2k+1)^2 square >= x^2 2^(2 bits + 2), that is whether x 2^bits / sqrt(square) <= k + 1/2.
+/// 256-bit numbers as four digits; never equal unless both are 0 (see normalizedComponent).
+constexpr bool atMostHalfAbove(std::uint64_t k, Halves square, std::uint64_t x, int bits) {
+  const auto add = [](std::uint64_t(&sum)[4], int at, std::uint64_t value) {
+    for (; at < 4 && value != 0; ++at) {
+      sum[at] += value;
+      value = sum[at] < value ? 1 : 0;
+    }
+  };
+  const auto addProduct = [&](std::uint64_t(&sum)[4], int at, std::uint64_t a, std::uint64_t b) {
+    const Halves product = multiplyHalves(a, b);
+    add(sum, at, product.low);
+    add(sum, at + 1, product.high);
+  };
+  const std::uint64_t odd = 2 * k + 1;
+  const Halves oddSquare = multiplyHalves(odd, odd);
+  std::uint64_t left[4] = {};
+  addProduct(left, 0, oddSquare.low, square.low);
+  addProduct(left, 1, oddSquare.low, square.high);
+  addProduct(left, 1, oddSquare.high, square.low);
+  addProduct(left, 2, oddSquare.high, square.high);
+  const Halves xSquare = multiplyHalves(x, x);
+  const int shift = 2 * bits + 2;
+  const int digits = shift / 64;
+  std::uint64_t right[4] = {};
+  const Halves low = Halves{0, xSquare.low} << shift % 64;
+  const Halves high = Halves{0, xSquare.high} << shift % 64;
+  add(right, digits, low.low);
+  add(right, digits + 1, low.high);
+  add(right, digits + 1, high.low);
+  if (digits + 2 < 4) add(right, digits + 2, high.high);
+  for (int i = 3; i > 0; --i) {
+    if (left[i] != right[i]) return left[i] > right[i];
+  }
+  return left[0] >= right[0];
+}
+
+/// x 2^bits / sqrt(square) to nearest, by bisection on the exact comparison. A tie would need an odd prime
+/// or a second factor 2 in the hypotenuse of a primitive Pythagorean triple to divide a leg: there is none.
+/// @pre x^2 <= square, bits <= 62
+constexpr std::uint64_t normalizedComponent(std::uint64_t x, Halves square, int bits) {
+  std::uint64_t low = 0;
+  std::uint64_t high = std::uint64_t{1} << bits;
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    if (atMostHalfAbove(middle, square, x, bits)) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return low;
+}
+
+struct RawComponents {
+  std::int64_t x, y;
+
+  friend constexpr bool operator==(RawComponents, RawComponents) = default;
+};
+
+/// (x, y) / length(x, y), each component to nearest; (0, 0) of (0, 0).
+template <class Way, int kBits>
+constexpr RawComponents normalize(std::int64_t x, std::int64_t y) {
+  if (x == 0 && y == 0) return {0, 0};
+  const std::uint64_t xSize = magnitude(x), ySize = magnitude(y);
+  const Halves square = multiplyHalves(xSize, xSize) + multiplyHalves(ySize, ySize);
+  const auto xUnit = static_cast<std::int64_t>(normalizedComponent(xSize, square, kBits));
+  const auto yUnit = static_cast<std::int64_t>(normalizedComponent(ySize, square, kBits));
+  return {x < 0 ? -xUnit : xUnit, y < 0 ? -yUnit : yUnit};
+}
+
+}  // namespace samestep::raw
