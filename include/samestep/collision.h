@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/shape.h>
+
+namespace samestep {
+
+/// Iterations after which the search for the nearest features gives up with the best found so far, and from
+/// which it is remarked on. MIS section 13.
+inline constexpr int kMaxGjkIterations = 30;
+inline constexpr int kMaxEpaIterations = 30;
+inline constexpr int kWarnGjkIterations = 20;
+inline constexpr int kWarnEpaIterations = 20;
+
+/// The most points a pair can touch in.
+inline constexpr int kMaxContactsPerPair = 2;
+
+/// Remarks of the collision search: the MIS's HighIterWarning, counted instead of printed.
+struct CollisionStats {
+  std::uint64_t highGjkIterations = 0;       ///< Searches that ended apart after kWarnGjkIterations or more.
+  std::uint64_t highGjkToEpaIterations = 0;  ///< Searches that took as long to find an overlap.
+  std::uint64_t highEpaIterations = 0;       ///< Overlaps that took kWarnEpaIterations or more to measure.
+};
+
+/// One point of contact: the two surface points, in the world, and which features made it. The same features
+/// in the next step mean the same point.
+template <Scalar S>
+struct CollisionPoint {
+  Vector<S> pointA;
+  Vector<S> pointB;
+  std::uint32_t hash = 0;
+};
+
+/// How two shapes touch; count 0 where they do not, and the normal then says nothing.
+template <Scalar S>
+struct CollisionInfo {
+  Vector<S> normal;  ///< Unit, from the first shape to the second.
+  CollisionPoint<S> points[kMaxContactsPerPair];
+  std::int32_t count = 0;
+  CollisionId id = 0;  ///< Where to start the next search for the same pair in the same order.
+
+  /// @throws CollisionContactOverflow
+  void push(const Vector<S>& pointA, const Vector<S>& pointB, std::uint32_t hash) {
+    require<Fault::CollisionContactOverflow>(count < kMaxContactsPerPair);
+    points[count++] = {pointA, pointB, hash};
+  }
+};
+
+/// Finds how two placed shapes touch. Circles touch when they overlap; whatever has edges, also when it just
+/// meets. A pure function: same arguments, same answer.
+///
+/// Fixed: moving both shapes by the same vector moves the points by it and changes nothing else. Exchanging
+/// the shapes turns the normal round and exchanges the points; two points then come in the other order. The
+/// answer is the same for every start id unless several features are equally near.
+///
+/// The normal is a unit vector always. Where the geometry gives none: two centres in one place (1, 0); the
+/// centre of a circle on a segment, the segment's normal; two vertices in one place, the normal of an edge.
+/// An end of a segment with a neighbour does not touch what lies on the neighbour's side.
+///
+/// @param start  the id of the last answer for this pair in this order, or 0; any value is safe
+/// @param stats  if not null, remarks are counted there
+/// MIS: collide
+template <Scalar S>
+CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start = 0,
+                         CollisionStats* stats = nullptr);
+
+/// One point of a ContactPointSet.
+template <Scalar S>
+struct ContactPoint {
+  Vector<S> pointA;  ///< On the surface of the first shape, in the world.
+  Vector<S> pointB;
+  S distance{};  ///< Metres along the normal; negative where they overlap.
+};
+
+/// How two shapes touch, as the user sees it. MIS section 7, ContactPointSet.
+template <Scalar S>
+struct ContactPointSet {
+  std::int32_t count = 0;
+  Vector<S> normal;  ///< Unit, from the first shape to the second; zero without contact.
+  ContactPoint<S> points[kMaxContactsPerPair];
+};
+
+/// Whether and how two shapes under two rigid poses touch, outside of any Space. Filters do not count.
+/// MIS: shapesCollide
+template <Scalar S>
+ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, const Shape<S>& b,
+                                 const Transform<S>& poseB);
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template CollisionInfo<double> collide<double>(const PlacedShape<double>&, const PlacedShape<double>&,
+                                                      CollisionId, CollisionStats*);
+extern template ContactPointSet<double> shapesCollide<double>(const Shape<double>&, const Transform<double>&,
+                                                              const Shape<double>&, const Transform<double>&);
+#endif
+extern template CollisionInfo<Fixed> collide<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
+                                                    CollisionId, CollisionStats*);
+extern template ContactPointSet<Fixed> shapesCollide<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&,
+                                                            const Shape<Fixed>&, const Transform<Fixed>&);
+extern template CollisionInfo<CheckedFixed> collide<CheckedFixed>(const PlacedShape<CheckedFixed>&,
+                                                                  const PlacedShape<CheckedFixed>&,
+                                                                  CollisionId, CollisionStats*);
+extern template ContactPointSet<CheckedFixed> shapesCollide<CheckedFixed>(const Shape<CheckedFixed>&,
+                                                                          const Transform<CheckedFixed>&,
+                                                                          const Shape<CheckedFixed>&,
+                                                                          const Transform<CheckedFixed>&);
+
+}  // namespace samestep

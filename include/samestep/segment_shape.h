@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <samestep/shape.h>
+
+namespace samestep {
+
+/// A straight line from a to b in the body's frame, grown by `radius` on all sides, metres; without mass. Its
+/// ends must differ, whatever the radius: a circle is what a segment without length would be.
+/// @throws ValueOutOfRange (not finite), NegativeRadius, SizeOutOfRange (extent over kMaxExtent),
+///         DegenerateShape (a equals b)
+/// MIS: segmentShapeNew
+template <Scalar S>
+Shape<S> segmentShape(BodyId body, const Vector<S>& a, const Vector<S>& b, S radius = S(0));
+
+/// Reads the geometry of a segment; a reference to a Shape that must outlive it.
+template <Scalar S>
+class ConstSegmentShape {
+ public:
+  /// @throws NotSegmentShape
+  explicit ConstSegmentShape(const Shape<S>& shape) : shape_(shape) {
+    require<Fault::NotSegmentShape>(shape.type() == ShapeType::segment);
+  }
+
+  /// MIS: segmentShapeGetA
+  Vector<S> a() const { return shape_.vertices()[0]; }
+  /// MIS: segmentShapeGetB
+  Vector<S> b() const { return shape_.vertices()[1]; }
+  /// The unit normal, to the right of the way from a to b. MIS: segmentShapeGetNormal
+  Vector<S> normal() const { return rperp(normalize(b() - a())); }
+  /// MIS: segmentShapeGetRadius
+  S radius() const { return shape_.radius(); }
+  /// From a to the neighbour set before it, and from b to the one after; zero without one.
+  Vector<S> tangentA() const { return shape_.vertices()[2]; }
+  Vector<S> tangentB() const { return shape_.vertices()[3]; }
+
+ private:
+  const Shape<S>& shape_;
+};
+
+/// Reads and changes the geometry of a segment. The mass stays; moment, area and centroid follow.
+template <Scalar S>
+class SegmentShape : public ConstSegmentShape<S> {
+ public:
+  /// @throws NotSegmentShape
+  explicit SegmentShape(Shape<S>& shape) : ConstSegmentShape<S>(shape), shape_(shape) {}
+
+  /// Says where the line goes on: from `previous` to a, and from b to `next`, in the body's frame. Nothing
+  /// then catches on the joints of a row of segments. A point equal to its end takes that neighbour away.
+  /// @throws ValueOutOfRange, SizeOutOfRange (farther than kMaxExtent from the body's origin)
+  /// MIS: segmentShapeSetNeighbors
+  void setNeighbors(const Vector<S>& previous, const Vector<S>& next);
+  /// The tangents towards the neighbours stay as they are.
+  /// @throws as segmentShape
+  /// MIS: segmentShapeSetEndpoints
+  void setEndpoints(const Vector<S>& a, const Vector<S>& b);
+  /// @throws as segmentShape
+  /// MIS: segmentShapeSetRadius
+  void setRadius(S radius);
+
+  /// Makes any shape this segment without neighbours; the surface, filter and ids stay, the mass too.
+  static void assign(Shape<S>& shape, const Vector<S>& a, const Vector<S>& b, S radius);
+
+ private:
+  Shape<S>& shape_;
+};
+
+/// kg m^2 about the origin of a segment, as a box of the same length and width.
+template <Scalar S>
+Scaled<S> scaledMomentForSegment(Scaled<S> mass, const Vector<S>& a, const Vector<S>& b, S radius);
+/// The same, saturating. MIS: momentForSegment
+template <Scalar S>
+S momentForSegment(S mass, const Vector<S>& a, const Vector<S>& b, S radius);
+
+/// m^2 of a rounded segment.
+template <Scalar S>
+Scaled<S> scaledAreaForSegment(const Vector<S>& a, const Vector<S>& b, S radius);
+/// The same, saturating. MIS: areaForSegment
+template <Scalar S>
+S areaForSegment(const Vector<S>& a, const Vector<S>& b, S radius);
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class SegmentShape<double>;
+extern template Shape<double> segmentShape<double>(BodyId, const Vector<double>&, const Vector<double>&,
+                                                   double);
+extern template Scaled<double> scaledMomentForSegment<double>(Scaled<double>, const Vector<double>&,
+                                                              const Vector<double>&, double);
+extern template double momentForSegment<double>(double, const Vector<double>&, const Vector<double>&, double);
+extern template Scaled<double> scaledAreaForSegment<double>(const Vector<double>&, const Vector<double>&,
+                                                            double);
+extern template double areaForSegment<double>(const Vector<double>&, const Vector<double>&, double);
+#endif
+extern template class SegmentShape<Fixed>;
+extern template Shape<Fixed> segmentShape<Fixed>(BodyId, const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
+extern template Scaled<Fixed> scaledMomentForSegment<Fixed>(Scaled<Fixed>, const Vector<Fixed>&,
+                                                            const Vector<Fixed>&, Fixed);
+extern template Fixed momentForSegment<Fixed>(Fixed, const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
+extern template Scaled<Fixed> scaledAreaForSegment<Fixed>(const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
+extern template Fixed areaForSegment<Fixed>(const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
+extern template class SegmentShape<CheckedFixed>;
+extern template Shape<CheckedFixed> segmentShape<CheckedFixed>(BodyId, const Vector<CheckedFixed>&,
+                                                               const Vector<CheckedFixed>&, CheckedFixed);
+extern template Scaled<CheckedFixed> scaledMomentForSegment<CheckedFixed>(Scaled<CheckedFixed>,
+                                                                          const Vector<CheckedFixed>&,
+                                                                          const Vector<CheckedFixed>&,
+                                                                          CheckedFixed);
+extern template CheckedFixed momentForSegment<CheckedFixed>(CheckedFixed, const Vector<CheckedFixed>&,
+                                                            const Vector<CheckedFixed>&, CheckedFixed);
+extern template Scaled<CheckedFixed> scaledAreaForSegment<CheckedFixed>(const Vector<CheckedFixed>&,
+                                                                        const Vector<CheckedFixed>&,
+                                                                        CheckedFixed);
+extern template CheckedFixed areaForSegment<CheckedFixed>(const Vector<CheckedFixed>&,
+                                                          const Vector<CheckedFixed>&, CheckedFixed);
+
+}  // namespace samestep

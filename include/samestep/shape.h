@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <samestep/bb.h>
+#include <samestep/control.h>
+#include <samestep/id.h>
+#include <samestep/transform.h>
+
+namespace samestep {
+
+enum class ShapeType : std::uint8_t { circle, segment, poly };
+
+/// The most vertices a polygon may have.
+inline constexpr int kMaxPolyVertices = 32;
+
+/// Metres: no point of a shape may be farther than this from the origin of its body. What moves is held to
+/// kMaxDynamicExtent, by the Space.
+inline constexpr int kMaxExtent = 1 << 14;
+inline constexpr int kMaxDynamicExtent = 1 << 8;
+
+/// The largest friction and elasticity, and the largest component of a surface velocity in m/s.
+inline constexpr int kMaxMaterial = 1 << 10;
+
+/// Distances below this, in metres, have no direction worth reading: queries then answer with the normal of
+/// the surface. MIS: MAGIC_EPSILON
+template <Scalar S>
+inline constexpr S kMagicEpsilon = S(1e-5);
+
+/// Which shapes may touch. Two shapes do unless they share a group that is not 0, or either's category is
+/// outside the other's mask.
+struct ShapeFilter {
+  std::uint32_t group = 0;
+  std::uint32_t category = 0xffffffffu;
+  std::uint32_t mask = 0xffffffffu;
+  friend constexpr bool operator==(const ShapeFilter&, const ShapeFilter&) = default;
+};
+
+/// Whether the filters let two shapes touch.
+[[gnu::always_inline]] inline constexpr bool accepts(const ShapeFilter& a, const ShapeFilter& b) {
+  return (a.group == 0 || a.group != b.group) && (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+}
+
+/// The mass of a shape and how it lies. MIS section 5, ShapeMassInfo.
+template <Scalar S>
+struct ShapeMassInfo {
+  S mass{};                ///< kg; 0 adds nothing to the body.
+  Vector<S> centroid{};    ///< In the body's frame, metres.
+  Scaled<S> unitMoment{};  ///< m^2: the moment about the centroid per kilogram.
+  Scaled<S> area{};        ///< m^2, the rounding included.
+
+  friend constexpr bool operator==(const ShapeMassInfo&, const ShapeMassInfo&) = default;
+};
+
+template <Scalar S>
+class CircleShape;
+template <Scalar S>
+class SegmentShape;
+template <Scalar S>
+class PolyShape;
+
+/// A collision shape: geometry in its body's frame, mass, surface, filter. MIS section 5.
+/// A plain value, made by circleShape, segmentShape, polyShape and boxShape; geometry is read and changed
+/// through CircleShape, SegmentShape and PolyShape. It carries the id its Space gave it, or none.
+/// Every setter checks first and leaves the shape as it was when it throws.
+template <Scalar S>
+class Shape {
+ public:
+  /// A circle of radius 0 of no body: a place to assign to.
+  constexpr Shape() = default;
+
+  constexpr ShapeType type() const { return type_; }
+  /// MIS: shapeGetBody
+  constexpr BodyId body() const { return body_; }
+  /// For a shape outside of any Space; a Space moves no shape to another body.
+  constexpr void setBody(BodyId body) { body_ = body; }
+
+  /// The id its Space knows it by; not valid() outside of one. MIS: shapeGetSpace
+  constexpr ShapeId id() const { return id_; }
+  /// The serial number of that Space, 0 without one. Never saved or hashed.
+  constexpr std::uint64_t owner() const { return owner_; }
+  /// For a Space: from here on the shape is its own.
+  constexpr void attach(ShapeId id, std::uint64_t owner) {
+    id_ = id;
+    owner_ = owner;
+  }
+  /// The same shape outside of any Space.
+  constexpr Shape detached() const {
+    Shape copy = *this;
+    copy.attach(ShapeId(), 0);
+    return copy;
+  }
+
+  /// Kilograms. MIS: shapeGetMass
+  constexpr S mass() const { return massInfo_.mass; }
+  /// @param mass  kg: 0, or from 1e-3 to 1e6
+  /// @throws NaNMass, NegativeMass, InfiniteMass, MassOutOfRange
+  /// MIS: shapeSetMass
+  void setMass(S mass);
+  /// kg / m^2; 0 for a shape without area. MIS: shapeGetDensity
+  S density() const;
+  /// Sets the mass to density times area; a shape without area gets mass 0.
+  /// @param density  kg / m^2, finite, >= 0
+  /// @throws ValueOutOfRange (not finite), NegativeMass, MassOutOfRange
+  /// MIS: shapeSetDensity
+  void setDensity(S density);
+  /// kg m^2 about the centroid; saturates. MIS: shapeGetMoment
+  S moment() const;
+  /// m^2, the rounding included; saturates. MIS: shapeGetArea
+  S area() const;
+  /// The centroid, in the body's frame. MIS: shapeGetCenterOfMass
+  constexpr Vector<S> centerOfMass() const { return massInfo_.centroid; }
+  /// All of that at full precision, to be summed over the shapes of a body.
+  constexpr const ShapeMassInfo<S>& massInfo() const { return massInfo_; }
+
+  /// MIS: shapeGetElasticity
+  constexpr S elasticity() const { return elasticity_; }
+  /// @param elasticity  0 (no bounce) to kMaxMaterial; 1 keeps all speed
+  /// @throws ValueOutOfRange, NegativeElasticity
+  /// MIS: shapeSetElasticity
+  void setElasticity(S elasticity);
+  /// MIS: shapeGetFriction
+  constexpr S friction() const { return friction_; }
+  /// @param friction  Coulomb's coefficient, 0 to kMaxMaterial; that of a contact is the product of two
+  /// @throws ValueOutOfRange, NegativeFriction
+  /// MIS: shapeSetFriction
+  void setFriction(S friction);
+  /// m/s, in world axes. MIS: shapeGetSurfaceVelocity
+  constexpr Vector<S> surfaceVelocity() const { return surfaceVelocity_; }
+  /// The speed of a conveyor belt: only friction feels it.
+  /// @param velocity  m/s, each component within +-kMaxMaterial
+  /// @throws ValueOutOfRange
+  /// MIS: shapeSetSurfaceVelocity
+  void setSurfaceVelocity(const Vector<S>& velocity);
+  /// MIS: shapeGetCollisionType
+  constexpr CollisionType collisionType() const { return collisionType_; }
+  /// MIS: shapeSetCollisionType
+  constexpr void setCollisionType(CollisionType type) { collisionType_ = type; }
+  constexpr const ShapeFilter& filter() const { return filter_; }
+  constexpr void setFilter(const ShapeFilter& filter) { filter_ = filter; }
+  /// A sensor reports contacts and never pushes.
+  constexpr bool sensor() const { return sensor_ != 0; }
+  constexpr void setSensor(bool sensor) { sensor_ = sensor ? 1 : 0; }
+  /// Any 64 bits; saved with the shape.
+  constexpr std::uint64_t userData() const { return userData_; }
+  constexpr void setUserData(std::uint64_t data) { userData_ = data; }
+
+  /// Metres: of a circle, or by which a segment or polygon is rounded (grown) on all sides.
+  constexpr S radius() const { return radius_; }
+  /// Metres from the body's origin to the farthest point of the shape.
+  S extent() const;
+
+  /// The geometry as stored. Circle: the centre. Segment: its ends, then the tangents towards its neighbours.
+  /// Polygon: the vertices, counter-clockwise.
+  constexpr std::span<const Vector<S>> vertices() const { return {vertices_, count_}; }
+
+  friend constexpr bool operator==(const Shape&, const Shape&) = default;
+
+  /// Visits every field that is state, in order, as visit(name, field). `Self` is Shape or const Shape. Past
+  /// the count the vertices are zero. The owner is no state: it names a Space of this process.
+  template <class Self, class Visit>
+  static constexpr void fields(Self& self, Visit&& visit) {
+    visit("type", self.type_);
+    visit("sensor", self.sensor_);
+    visit("count", self.count_);
+    visit("body", self.body_);
+    visit("id", self.id_);
+    visit("userData", self.userData_);
+    visit("collisionType", self.collisionType_);
+    visit("group", self.filter_.group);
+    visit("category", self.filter_.category);
+    visit("mask", self.filter_.mask);
+    visit("elasticity", self.elasticity_);
+    visit("friction", self.friction_);
+    visit("surfaceVelocity", self.surfaceVelocity_);
+    visit("radius", self.radius_);
+    visit("mass", self.massInfo_.mass);
+    visit("centroid", self.massInfo_.centroid);
+    visit("unitMoment", self.massInfo_.unitMoment);
+    visit("area", self.massInfo_.area);
+    visit("vertices", self.vertices_);
+  }
+
+  /// Whether the record could have been made by the functions of this library, the ids and the surface apart:
+  /// for what was read from outside.
+  bool wellFormed() const;
+
+ private:
+  friend class CircleShape<S>;
+  friend class SegmentShape<S>;
+  friend class PolyShape<S>;
+
+  ShapeMassInfo<S> massInfo_;
+  S radius_{};
+  S elasticity_{};
+  S friction_{};
+  Vector<S> surfaceVelocity_;
+  std::uint64_t userData_ = 0;
+  std::uint64_t owner_ = 0;
+  BodyId body_;
+  ShapeId id_;
+  CollisionType collisionType_ = kWildcardCollisionType;
+  ShapeFilter filter_;
+  std::uint32_t unused_ = 0;  // Keeps the record free of padding.
+  std::uint8_t unusedByte_ = 0;
+  ShapeType type_ = ShapeType::circle;
+  std::uint8_t sensor_ = 0;
+  std::uint8_t count_ = 1;
+  Vector<S> vertices_[kMaxPolyVertices];
+};
+
+/// A point and a unit vector: of a polygon, a vertex and the outward normal of the edge that ends there.
+template <Scalar S>
+struct Plane {
+  Vector<S> v0;
+  Vector<S> n;
+};
+
+/// The geometry of one shape where its body stands: what collide and the queries read. A cache, made from the
+/// shape by prepare and moved by place.
+template <Scalar S>
+struct PlacedShape {
+  BB<S> box;        ///< The smallest box around the shape, rounding included.
+  Plane<S> center;  ///< Circle: v0 is its centre in the world, n is where the body holds it.
+  /// Room for planeCount(shape) planes, given by the owner of the PlacedShape; the first half is the world's,
+  /// the second half the body's. Polygon: its planes. Segment: {a, -n}, {b, n}, {tangent at a, tangent at b}.
+  Plane<S>* planes = nullptr;
+  S radius{};
+  ShapeType type = ShapeType::circle;
+  std::uint8_t count = 1;  ///< Vertices: circle 1, segment 2.
+};
+
+/// How many planes a PlacedShape of this shape needs: 0 for a circle, at most 2 kMaxPolyVertices.
+template <Scalar S>
+int planeCount(const Shape<S>& shape);
+
+/// Writes all that does not depend on the pose. `out.planes` must be set; call again when the shape changed.
+template <Scalar S>
+void prepare(const Shape<S>& shape, PlacedShape<S>& out);
+
+/// Moves a prepared shape to where a rigid `pose` puts it and returns its new box. MIS: shapeUpdate
+template <Scalar S>
+BB<S> place(const Transform<S>& pose, PlacedShape<S>& placed);
+
+/// Both: prepare, then place. MIS: shapeCacheBB
+template <Scalar S>
+BB<S> place(const Shape<S>& shape, const Transform<S>& pose, PlacedShape<S>& out);
+
+/// A placed shape with its own room: for a single test, where no Space keeps the planes.
+template <Scalar S>
+class Placement {
+ public:
+  Placement(const Shape<S>& shape, const Transform<S>& pose) {
+    placed_.planes = planes_;
+    place(shape, pose, placed_);
+  }
+  Placement(const Placement&) = delete;
+  Placement& operator=(const Placement&) = delete;
+
+  const PlacedShape<S>& operator*() const { return placed_; }
+  const PlacedShape<S>* operator->() const { return &placed_; }
+
+ private:
+  Plane<S> planes_[2 * kMaxPolyVertices];
+  PlacedShape<S> placed_;
+};
+
+/// The smallest box around the shape under a pose. MIS: shapeGetBB
+template <Scalar S>
+BB<S> boundingBox(const Shape<S>& shape, const Transform<S>& pose);
+
+/// Where a point stands to a shape.
+template <Scalar S>
+struct PointQueryInfo {
+  Vector<S> point;     ///< The nearest point of the surface, in the world.
+  S distance{};        ///< Metres; negative inside.
+  Vector<S> gradient;  ///< The unit direction in which the distance grows fastest.
+};
+
+/// Distance from a point, both within the world. Within kMagicEpsilon of the core of a shape (the centre of a
+/// circle, the edge of a segment or polygon before rounding) the gradient is the normal there, (0, 1) for a
+/// circle.
+template <Scalar S>
+PointQueryInfo<S> pointQuery(const PlacedShape<S>& shape, const Vector<S>& point);
+
+/// Where a moving circle first touches a shape.
+template <Scalar S>
+struct SegmentQueryInfo {
+  bool hit = false;
+  S alpha{1};        ///< The part of the way, in [0, 1]; 1 without a hit.
+  Vector<S> point;   ///< Where they touch, on the surface of the shape; the end of the way without a hit.
+  Vector<S> normal;  ///< The unit normal of the surface there; zero without a hit.
+};
+
+/// Moves a circle of `radius` >= 0 from a to b. One that begins in touch hits at alpha 0, with the gradient
+/// of the point query as the normal.
+template <Scalar S>
+SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a, const Vector<S>& b,
+                                 S radius = S(0));
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class Shape<double>;
+extern template int planeCount<double>(const Shape<double>&);
+extern template void prepare<double>(const Shape<double>&, PlacedShape<double>&);
+extern template BB<double> place<double>(const Transform<double>&, PlacedShape<double>&);
+extern template BB<double> place<double>(const Shape<double>&, const Transform<double>&,
+                                         PlacedShape<double>&);
+extern template BB<double> boundingBox<double>(const Shape<double>&, const Transform<double>&);
+extern template PointQueryInfo<double> pointQuery<double>(const PlacedShape<double>&, const Vector<double>&);
+extern template SegmentQueryInfo<double> segmentQuery<double>(const PlacedShape<double>&,
+                                                              const Vector<double>&, const Vector<double>&,
+                                                              double);
+#endif
+extern template class Shape<Fixed>;
+extern template int planeCount<Fixed>(const Shape<Fixed>&);
+extern template void prepare<Fixed>(const Shape<Fixed>&, PlacedShape<Fixed>&);
+extern template BB<Fixed> place<Fixed>(const Transform<Fixed>&, PlacedShape<Fixed>&);
+extern template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, PlacedShape<Fixed>&);
+extern template BB<Fixed> boundingBox<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&);
+extern template PointQueryInfo<Fixed> pointQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&);
+extern template SegmentQueryInfo<Fixed> segmentQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&,
+                                                            const Vector<Fixed>&, Fixed);
+extern template class Shape<CheckedFixed>;
+extern template int planeCount<CheckedFixed>(const Shape<CheckedFixed>&);
+extern template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, PlacedShape<CheckedFixed>&);
+extern template BB<CheckedFixed> place<CheckedFixed>(const Transform<CheckedFixed>&,
+                                                     PlacedShape<CheckedFixed>&);
+extern template BB<CheckedFixed> place<CheckedFixed>(const Shape<CheckedFixed>&,
+                                                     const Transform<CheckedFixed>&,
+                                                     PlacedShape<CheckedFixed>&);
+extern template BB<CheckedFixed> boundingBox<CheckedFixed>(const Shape<CheckedFixed>&,
+                                                           const Transform<CheckedFixed>&);
+extern template PointQueryInfo<CheckedFixed> pointQuery<CheckedFixed>(const PlacedShape<CheckedFixed>&,
+                                                                      const Vector<CheckedFixed>&);
+extern template SegmentQueryInfo<CheckedFixed> segmentQuery<CheckedFixed>(const PlacedShape<CheckedFixed>&,
+                                                                          const Vector<CheckedFixed>&,
+                                                                          const Vector<CheckedFixed>&,
+                                                                          CheckedFixed);
+
+}  // namespace samestep
