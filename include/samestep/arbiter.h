@@ -10,9 +10,6 @@
 
 namespace samestep {
 
-/// MIS: MAX_CONTACTS_PER_ARBITER
-inline constexpr int kMaxContacts = 2;
-
 /// Where a pair of shapes stands. MIS: ArbiterState
 enum class ArbiterState : std::uint8_t {
   apart = 0,           ///< The boxes overlap, the shapes have not touched yet.
@@ -53,7 +50,7 @@ struct Pair {
   ShapeId b{};
   /// From a to b, a unit vector.
   Vector<S> normal{};
-  Contact<S> contacts[kMaxContacts]{};
+  Contact<S> contacts[kMaxContactsPerPair]{};
   /// For this collision; see Arbiter's setters.
   S elasticity{};
   S friction{};
@@ -84,19 +81,6 @@ struct Pair {
     visit("state", self.state);
     visit("solved", self.solved);
   }
-};
-
-/// What a contact looks like from outside. MIS: ContactPointSet
-template <Scalar S>
-struct ContactPointSet {
-  struct Point {
-    Vector<S> pointA{};  ///< On the surface of A, world coordinates.
-    Vector<S> pointB{};
-    S distance{};        ///< Along the normal; negative where the shapes overlap.
-  };
-  int count = 0;
-  Vector<S> normal{};
-  Point points[kMaxContacts]{};
 };
 
 /// Two touching shapes, as a callback sees them. MIS section 7.

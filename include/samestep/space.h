@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <samestep/arbiter.h>
@@ -12,7 +13,6 @@
 #include <samestep/collision.h>
 #include <samestep/error.h>
 #include <samestep/id.h>
-#include <samestep/remark.h>
 #include <samestep/shape.h>
 #include <samestep/slot_map.h>
 
@@ -123,11 +123,11 @@ class SavedSpace {
  public:
   /// The step it was saved after.
   std::uint64_t stamp() const { return state_.stamp; }
+  const WorldState<S>& state() const { return state_; }
 
  private:
   friend class Space<S>;
   WorldState<S> state_;
-  std::uint32_t owner_ = 0;
 };
 
 /// A point query's answer.
@@ -264,20 +264,27 @@ class Space {
   /// MIS: bodyAccumulateMassFromShapes
   void accumulateMassFromShapes(BodyId id);
 
-  std::uint32_t bodyCount() const { return state_.bodies.size(); }
-  std::uint32_t shapeCount() const { return state_.shapes.size(); }
+  std::size_t bodyCount() const { return state_.bodies.size(); }
+  std::size_t shapeCount() const { return state_.shapes.size(); }
 
   /// Calls visit(const Body<S>&) for each body by rising id. Locks the Space. MIS: spaceEachBody
   template <class Visit>
   void eachBody(Visit&& visit) {
-    const LockGuard guard(*this);
-    state_.bodies.each([&](BodyId, Body<S>& body) { visit(body); });
+    LockGuard guard(*this);
+    std::as_const(state_.bodies).each([&](BodyId, const Body<S>& body) { visit(body); });
+    guard.finish();
   }
   template <class Visit>
   void eachBody(Visit&& visit) const {
     state_.bodies.each([&](BodyId, const Body<S>& body) { visit(body); });
   }
   /// Calls visit(const Shape<S>&) for each shape by rising id. Locks the Space. MIS: spaceEachShape
+  template <class Visit>
+  void eachShape(Visit&& visit) {
+    LockGuard guard(*this);
+    std::as_const(state_.shapes).each([&](ShapeId, const Shape<S>& shape) { visit(shape); });
+    guard.finish();
+  }
   template <class Visit>
   void eachShape(Visit&& visit) const {
     state_.shapes.each([&](ShapeId, const Shape<S>& shape) { visit(shape); });
@@ -287,17 +294,20 @@ class Space {
   /// MIS: bodyEachShape
   template <class Visit>
   void eachShape(BodyId id, Visit&& visit) const {
-    for (const std::uint32_t index : shapesOf(id)) visit(state_.shapes.valueAt(index));
+    for (std::uint32_t index = firstShape(id); index != ShapeId::kNoIndex; index = nextShape(index)) {
+      visit(state_.shapes[index]);
+    }
   }
   /// Calls visit(Arbiter<S>&) for each touching pair of shapes, by rising ids. Locks the Space.
   template <class Visit>
   void eachArbiter(Visit&& visit) {
-    const LockGuard guard(*this);
+    LockGuard guard(*this);
     for (Pair<S>& pair : state_.pairs) {
       if (!touching(pair)) continue;
       Arbiter<S> arbiter = arbiterOf(pair);
       visit(arbiter);
     }
+    guard.finish();
   }
   /// The same for those of one body, which is each arbiter's A or B as its ids say. O(its pairs) after the
   /// first call of a step.
@@ -306,11 +316,12 @@ class Space {
   template <class Visit>
   void eachArbiter(BodyId id, Visit&& visit) {
     const std::span<const std::uint32_t> thread = threadOf(id);
-    const LockGuard guard(*this);
+    LockGuard guard(*this);
     for (const std::uint32_t index : thread) {
       Arbiter<S> arbiter = arbiterOf(state_.pairs[index]);
       visit(arbiter);
     }
+    guard.finish();
   }
 
   // Collision handlers. Functions are wiring, registered under a number; the binding of collision types to a
@@ -425,30 +436,87 @@ class Space {
   /// original did.
   /// @throws SpaceLocked; MissingCallback if this Space lacks a number the world uses
   void restore(const SavedSpace<S>& saved);
-  /// Takes over a state that has been validated: see samestep/state.h.
-  void adopt(WorldState<S>&& state);
+  /// Brings in a whole state, as save does; the caller answers for it being one that a Space can have.
+  /// @throws SpaceLocked, MissingCallback
+  void adopt(const WorldState<S>& state);
   /// Forgets everything that can be computed again. Changes no result.
   /// @throws SpaceLocked
   void dropCache();
 
  private:
+  /// Locks while it lives. finish() also runs the post-step callbacks; without it, as when a visitor throws,
+  /// they wait for the next unlock.
   class LockGuard {
    public:
-    explicit LockGuard(Space& space) : space_(space) { space_.lock(); }
-    ~LockGuard() { --space_.locked_; }
+    explicit LockGuard(Space& space) : space_(&space) { space.lock(); }
+    ~LockGuard() {
+      if (space_ != nullptr) --space_->locked_;
+    }
     LockGuard(const LockGuard&) = delete;
     LockGuard& operator=(const LockGuard&) = delete;
+    void finish() {
+      Space* space = space_;
+      space_ = nullptr;
+      space->unlock(true);
+    }
 
    private:
-    Space& space_;
+    Space* space_;
+  };
+  /// Exchanges A and B of an arbiter while it lives.
+  class TurnedRound {
+   public:
+    explicit TurnedRound(Arbiter<S>& arbiter) : arbiter_(arbiter) { turn(); }
+    ~TurnedRound() { turn(); }
+    TurnedRound(const TurnedRound&) = delete;
+    TurnedRound& operator=(const TurnedRound&) = delete;
+
+   private:
+    void turn() { arbiter_.swapped_ = !arbiter_.swapped_; }
+    Arbiter<S>& arbiter_;
   };
   struct Impl;
 
   void requireUnlocked() const;
-  std::span<const std::uint32_t> shapesOf(BodyId id) const;
+  std::uint32_t firstShape(BodyId id) const;
+  std::uint32_t nextShape(std::uint32_t index) const;
   std::span<const std::uint32_t> threadOf(BodyId id);
   bool touching(const Pair<S>& pair) const;
   Arbiter<S> arbiterOf(Pair<S>& pair);
+
+  // The stages of a step, in their order.
+  void checkStep(S dt) const;
+  void integratePositions(S dt);
+  void updateShapes();
+  void findPairs();
+  void collidePairs();
+  void expirePairs();
+  void preStep(S dt);
+  void integrateVelocities(S dt);
+  void solve(S dtCoefficient);
+  void postSolve();
+  void listRangeEvents();
+  void endStage(Stage stage);
+
+  void ensureCache() const;
+  void placeShapesOf(std::uint32_t bodyIndex) const;
+  void refreshTouched();
+  void collidePair(Pair<S>& pair);
+  bool applyCollision(Pair<S>& pair, const CollisionInfo<S>& info);
+  void callSeparate(Pair<S>& pair, bool removal);
+  void dropPairs(BodyId body, ShapeId shape);
+  bool mayCollide(std::uint32_t a, std::uint32_t b) const;
+  bool askHandlers(Pair<S>& pair);
+  const CollisionHandler<S>* boundHandler(HandlerBinding::Kind kind, CollisionType typeA,
+                                          CollisionType typeB) const;
+  const CollisionHandler<S>* handlerFor(Arbiter<S>& arbiter) const;
+  const CollisionHandler<S>* wildcardFor(const Shape<S>& shape) const;
+  void requireCallbacks(const Body<S>& body) const;
+  template <class Collect>
+  void collectFound(Collect&& collect);
+  MassProperties<S> massOfShapes(BodyId id, ShapeId replaced, const Shape<S>* by) const;
+  void bind(const HandlerBinding& binding);
+  void checkShape(const Shape<S>& shape, const Body<S>& body) const;
 
   WorldState<S> state_;
   Impl* impl_;

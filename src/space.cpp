@@ -1,0 +1,526 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/space.h>
+
+#include <algorithm>
+#include <atomic>
+#include <tuple>
+
+#include "space_impl.h"
+#include "state_hash.h"
+
+namespace samestep {
+namespace {
+
+/// Tells the objects of one Space from those of another; 0 is nobody's. Never part of a result.
+std::uint32_t nextSerial() {
+  static std::atomic<std::uint32_t> last{0};
+  return ++last;
+}
+
+template <Scalar S>
+void requireIn(S value, S low, S high) {
+  require<Fault::ValueOutOfRange>(value >= low && value <= high);
+}
+
+}  // namespace
+
+const char* stageName(Stage stage) {
+  switch (stage) {
+    case Stage::integratePositions:
+      return "integrate positions";
+    case Stage::updateShapes:
+      return "update shapes";
+    case Stage::findPairs:
+      return "find pairs";
+    case Stage::collide:
+      return "collide";
+    case Stage::preStep:
+      return "pre-step";
+    case Stage::integrateVelocities:
+      return "integrate velocities";
+    case Stage::solve:
+      return "solve";
+    case Stage::callbacks:
+      return "callbacks";
+  }
+  return "unknown";
+}
+
+template <Scalar S>
+Space<S>::Space() : impl_(new Impl) {
+  impl_->serial = nextSerial();
+  state_.staticBody = add(Body<S>::fixedInPlace());
+}
+
+template <Scalar S>
+Space<S>::~Space() {
+  delete impl_;
+}
+
+template <Scalar S>
+void Space<S>::requireUnlocked() const {
+  require<Fault::SpaceLocked>(locked_ == 0);
+}
+
+// Settings.
+
+template <Scalar S>
+void Space<S>::setIterations(int iterations) {
+  require<Fault::InvalidIter>(iterations >= 1 && iterations <= 1000);
+  state_.settings.iterations = iterations;
+}
+
+template <Scalar S>
+void Space<S>::setGravity(const Vector<S>& gravity) {
+  require<Fault::ValueOutOfRange>(within(gravity, kMaxAcceleration<S>));
+  state_.settings.gravity = gravity;
+}
+
+template <Scalar S>
+void Space<S>::setDamping(S damping) {
+  requireIn(damping, S(0), S(1));
+  state_.settings.damping = damping;
+}
+
+template <Scalar S>
+void Space<S>::setCollisionSlop(S slop) {
+  requireIn(slop, S(0), S(256));
+  state_.settings.collisionSlop = slop;
+}
+
+template <Scalar S>
+void Space<S>::setCollisionBias(S bias) {
+  requireIn(bias, S(0), S(1));
+  state_.settings.collisionBias = bias;
+}
+
+template <Scalar S>
+void Space<S>::setCollisionPersistence(std::uint32_t steps) {
+  state_.settings.collisionPersistence = steps;
+}
+
+template <Scalar S>
+void Space<S>::setWorldExtent(S extent) {
+  require<Fault::ValueOutOfRange>(extent > S(0) && extent <= kMaxWorldExtent<S>);
+  state_.settings.worldExtent = extent;
+}
+
+// Bodies.
+
+template <Scalar S>
+BodyId Space<S>::add(const Body<S>& body) {
+  requireUnlocked();
+  require<Fault::DuplicateBody>(!body.id().valid() || body.owner_ != impl_->serial);
+  require<Fault::AttachedBody>(!body.id().valid());
+  require<Fault::IllegalBody>(within(body.worldCenter(), worldExtent()), "Body's position is invalid.");
+
+  const BodyId id = state_.bodies.insert(body);
+  Body<S>& kept = state_.bodies[id.index];
+  kept.id_ = id;
+  kept.owner_ = impl_->serial;
+  ensureCache();
+  impl_->growBodies(state_.bodies.slots());
+  return id;
+}
+
+template <Scalar S>
+BodyId Space<S>::setStaticBody(const Body<S>& body) {
+  requireUnlocked();
+  require<Fault::AttachedStaticBody>(firstShape(staticBody()) == Impl::kNone);
+  require<Fault::IllegalBody>(body.type() == BodyType::staticBody, "The body is not static.");
+
+  const BodyId before = state_.staticBody;
+  state_.staticBody = add(body);
+  remove(before);
+  return state_.staticBody;
+}
+
+template <Scalar S>
+void Space<S>::remove(BodyId id) {
+  requireUnlocked();
+  require<Fault::BodyNotFound>(contains(id));
+  require<Fault::MainStaticBody>(id != state_.staticBody);
+  require<Fault::BodyHasShapes>(firstShape(id) == Impl::kNone);
+
+  state_.bodies.erase(id);
+  impl_->poses[id.index] = {};
+}
+
+template <Scalar S>
+void Space<S>::removeWithShapes(BodyId id) {
+  requireUnlocked();
+  require<Fault::BodyNotFound>(contains(id));
+  require<Fault::MainStaticBody>(id != state_.staticBody);
+  while (firstShape(id) != Impl::kNone) remove(state_.shapes.idOf(firstShape(id)));
+  remove(id);
+}
+
+template <Scalar S>
+Body<S>& Space<S>::body(BodyId id) {
+  Body<S>& found = state_.bodies.template at<Fault::BodyNotFound>(id);
+  impl_->touch(id.index);
+  return found;
+}
+
+template <Scalar S>
+const Body<S>& Space<S>::body(BodyId id) const {
+  return state_.bodies.template at<Fault::BodyNotFound>(id);
+}
+
+template <Scalar S>
+void Space<S>::setType(BodyId id, BodyType type) {
+  requireUnlocked();
+  Body<S>& kept = body(id);
+  require<Fault::MainStaticBody>(id != state_.staticBody || type == BodyType::staticBody,
+                                 "The designated static body of a space stays static.");
+  Body<S> changed = kept.detached();
+  changed.setType(type);
+  if (type == BodyType::dynamicBody) {
+    for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
+      checkShape(state_.shapes[i], changed);
+    }
+    const MassProperties<S> mass = massOfShapes(id, {}, nullptr);
+    if (mass.mass > S(0)) changed.setMassProperties(mass);
+  }
+
+  changed.id_ = kept.id_;
+  changed.owner_ = kept.owner_;
+  kept = changed;
+}
+
+// Shapes.
+
+template <Scalar S>
+void Space<S>::checkShape(const Shape<S>& shape, const Body<S>& body) const {
+  const S limit = body.type() == BodyType::staticBody ? S(kMaxExtent) : S(kMaxDynamicExtent);
+  require<Fault::SizeOutOfRange>(shape.extent() <= limit,
+                                 "A shape of a body that moves reaches farther than 2^8 m from its origin.");
+}
+
+template <Scalar S>
+MassProperties<S> Space<S>::massOfShapes(BodyId id, ShapeId replaced, const Shape<S>* by) const {
+  // The shapes' own sums first, then the parallel axes, all at full range: no Fixed intermediate can
+  // overflow or lose a small shape beside a large one.
+  struct Part {
+    Scaled<S> mass, x, y, unitMoment;
+  };
+  Scaled<S> mass{}, x{}, y{}, moment{};
+  const auto eachPart = [&](auto&& visit) {
+    const auto visitShape = [&](const Shape<S>& shape) {
+      const ShapeMassInfo<S>& info = shape.massInfo();
+      if (info.mass > S(0)) {
+        visit(Part{toScaled(info.mass), toScaled(info.centroid.x), toScaled(info.centroid.y), info.unitMoment});
+      }
+    };
+    for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
+      if (state_.shapes.idOf(i) == replaced) {
+        if (by != nullptr) visitShape(*by);
+      } else {
+        visitShape(state_.shapes[i]);
+      }
+    }
+    if (!replaced.valid() && by != nullptr) visitShape(*by);
+  };
+  // One lonely shape keeps its numbers exactly.
+  eachPart([&](const Part& part) {
+    const Scaled<S> sum = mass + part.mass;
+    const Scaled<S> dx = part.x - x;
+    const Scaled<S> dy = part.y - y;
+    moment = moment + part.mass * part.unitMoment;
+    if (mass > Scaled<S>{}) {
+      moment = moment + (dx * dx + dy * dy) * (mass * part.mass / sum);
+      x = x + dx * (part.mass / sum);
+      y = y + dy * (part.mass / sum);
+    } else {
+      x = part.x;
+      y = part.y;
+    }
+    mass = sum;
+  });
+  return {toScalar<S>(mass), moment, {toScalar<S>(x), toScalar<S>(y)}};
+}
+
+template <Scalar S>
+ShapeId Space<S>::add(const Shape<S>& shape) {
+  requireUnlocked();
+  require<Fault::DuplicateShape>(!shape.id().valid() || shape.owner() != impl_->serial);
+  require<Fault::AttachedShape>(!shape.id().valid());
+  const Body<S>& holder = state_.bodies.template at<Fault::BodyNotFound>(shape.body());
+  require<Fault::DegenerateShape>(shape.wellFormed());
+  checkShape(shape, holder);
+  ensureCache();
+  const BodyId bodyId = shape.body();
+  if (holder.isDynamic() && shape.mass() > S(0)) {
+    const MassProperties<S> mass = massOfShapes(bodyId, {}, &shape);
+    state_.bodies[bodyId.index].setMassProperties(mass);
+  }
+
+  const ShapeId id = state_.shapes.insert(shape);
+  Shape<S>& kept = state_.shapes[id.index];
+  kept.attach(id, impl_->serial);
+  impl_->growShapes(state_.shapes.slots());
+  impl_->linkShape(bodyId.index, id.index);
+  impl_->prepareShape(id.index, kept);
+  // The next step or query places all shapes of the body.
+  impl_->poses[bodyId.index].known = false;
+  impl_->touch(bodyId.index);
+  return id;
+}
+
+template <Scalar S>
+void Space<S>::remove(ShapeId id) {
+  requireUnlocked();
+  require<Fault::ShapeNotFound>(contains(id));
+  ensureCache();
+  const BodyId bodyId = state_.shapes[id.index].body();
+  Body<S>& holder = state_.bodies[bodyId.index];
+  const bool hadMass = state_.shapes[id.index].mass() > S(0);
+  if (holder.isDynamic() && hadMass) holder.setMassProperties(massOfShapes(bodyId, id, nullptr));
+
+  dropPairs(bodyId, id);
+  impl_->dropBox(id.index);
+  impl_->unlinkShape(bodyId.index, id.index);
+  state_.shapes.erase(id);
+  impl_->touch(bodyId.index);
+}
+
+template <Scalar S>
+const Shape<S>& Space<S>::shape(ShapeId id) const {
+  return state_.shapes.template at<Fault::ShapeNotFound>(id);
+}
+
+template <Scalar S>
+void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
+  Shape<S>& kept = state_.shapes.template at<Fault::ShapeNotFound>(id);
+  Shape<S> next = shape;
+  next.attach(id, impl_->serial);
+  next.setBody(kept.body());
+  const bool sameGeometry = next.type() == kept.type() && next.radius() == kept.radius() &&
+                            std::ranges::equal(next.vertices(), kept.vertices());
+  const bool sameMass = next.massInfo() == kept.massInfo();
+  if (!sameGeometry || !sameMass) {
+    requireUnlocked();
+    require<Fault::DegenerateShape>(next.wellFormed());
+    Body<S>& holder = state_.bodies[kept.body().index];
+    checkShape(next, holder);
+    ensureCache();
+    if (holder.isDynamic() && !sameMass) holder.setMassProperties(massOfShapes(kept.body(), id, &next));
+  }
+
+  kept = next;
+  if (!sameGeometry) {
+    impl_->prepareShape(id.index, kept);
+    impl_->poses[kept.body().index].known = false;
+    impl_->touch(kept.body().index);
+  }
+}
+
+template <Scalar S>
+void Space<S>::accumulateMassFromShapes(BodyId id) {
+  Body<S>& kept = body(id);
+  if (kept.isDynamic()) kept.setMassProperties(massOfShapes(id, {}, nullptr));
+}
+
+template <Scalar S>
+std::uint32_t Space<S>::firstShape(BodyId id) const {
+  require<Fault::BodyNotFound>(contains(id));
+  ensureCache();
+  return impl_->firstShape[id.index];
+}
+
+template <Scalar S>
+std::uint32_t Space<S>::nextShape(std::uint32_t index) const {
+  return impl_->nextShape[index];
+}
+
+template <Scalar S>
+BB<S> Space<S>::boundingBox(ShapeId id) {
+  require<Fault::ShapeNotFound>(contains(id));
+  refreshTouched();
+  return impl_->placed[id.index].box;
+}
+
+template <Scalar S>
+void Space<S>::reindexStatic() {
+  requireUnlocked();
+  refreshTouched();
+}
+
+template <Scalar S>
+void Space<S>::reindexShape(ShapeId id) {
+  requireUnlocked();
+  require<Fault::ShapeNotFound>(contains(id));
+  refreshTouched();
+}
+
+template <Scalar S>
+void Space<S>::reindexShapesForBody(BodyId id) {
+  requireUnlocked();
+  require<Fault::BodyNotFound>(contains(id));
+  refreshTouched();
+}
+
+// Locking and callbacks.
+
+template <Scalar S>
+void Space<S>::unlock(bool runPostStep) {
+  require<Fault::SpaceLockUnderflow>(locked_ > 0);
+  --locked_;
+  if (!runPostStep || locked_ > 0 || impl_->runningPostStep) return;
+  // A callback may add callbacks: they run in the same go.
+  impl_->runningPostStep = true;
+  for (std::size_t i = 0; i < impl_->postStep.size(); ++i) {
+    const typename Impl::PostStep callback = impl_->postStep[i];
+    impl_->postStep[i].function = nullptr;
+    callback.function(*this, callback.key, callback.data);
+  }
+  impl_->postStep.clear();
+  impl_->runningPostStep = false;
+}
+
+template <Scalar S>
+bool Space<S>::addPostStepCallback(PostStepFunc function, std::uint64_t key, void* data) {
+  for (const typename Impl::PostStep& waiting : impl_->postStep) {
+    if (waiting.function != nullptr && waiting.key == key) return false;
+  }
+  impl_->postStep.push_back({function, key, data});
+  if (locked_ == 0 && !impl_->runningPostStep) {
+    lock();
+    unlock(true);
+  }
+  return true;
+}
+
+template <Scalar S>
+void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>& handler) {
+  require<Fault::ValueOutOfRange>(number != 0);
+  Impl::set(impl_->handlers, typename Impl::RegisteredHandler{number, handler});
+}
+
+template <Scalar S>
+void Space<S>::registerPositionFunc(CallbackNumber number, PositionFunc function, void* data) {
+  require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
+  Impl::set(impl_->positionFuncs, {number, function, data});
+}
+
+template <Scalar S>
+void Space<S>::registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data) {
+  require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
+  Impl::set(impl_->velocityFuncs, {number, function, data});
+}
+
+template <Scalar S>
+void Space<S>::bind(const HandlerBinding& binding) {
+  requireUnlocked();
+  require<Fault::MissingCallback>(Impl::find(impl_->handlers, binding.number) != nullptr);
+  const auto key = [](const HandlerBinding& b) { return std::tuple(b.kind, b.typeA, b.typeB); };
+  auto& all = state_.handlers;
+  const auto place = std::lower_bound(all.begin(), all.end(), binding,
+                                      [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  if (place != all.end() && key(*place) == key(binding)) {
+    *place = binding;
+  } else {
+    all.insert(place, binding);
+  }
+}
+
+template <Scalar S>
+void Space<S>::addCollisionHandler(CollisionType typeA, CollisionType typeB, CallbackNumber number) {
+  bind({typeA, typeB, number, HandlerBinding::Kind::pair});
+}
+
+template <Scalar S>
+void Space<S>::addWildcardHandler(CollisionType type, CallbackNumber number) {
+  bind({type, kWildcardCollisionType, number, HandlerBinding::Kind::wildcard});
+}
+
+template <Scalar S>
+void Space<S>::addDefaultCollisionHandler(CallbackNumber number) {
+  bind({kWildcardCollisionType, kWildcardCollisionType, number, HandlerBinding::Kind::fallback});
+}
+
+template <Scalar S>
+void Space<S>::setStageObserver(StageObserver observer, void* data) {
+  impl_->observer = observer;
+  impl_->observerData = data;
+}
+
+// Saving.
+
+template <Scalar S>
+void Space<S>::save(SavedSpace<S>& into) const {
+  requireUnlocked();
+  into.state_ = state_;
+}
+
+template <Scalar S>
+SavedSpace<S> Space<S>::save() const {
+  SavedSpace<S> saved;
+  save(saved);
+  return saved;
+}
+
+template <Scalar S>
+void Space<S>::restore(const SavedSpace<S>& saved) {
+  adopt(saved.state_);
+}
+
+template <Scalar S>
+void Space<S>::adopt(const WorldState<S>& state) {
+  requireUnlocked();
+  for (const HandlerBinding& binding : state.handlers) {
+    require<Fault::MissingCallback>(Impl::find(impl_->handlers, binding.number) != nullptr);
+  }
+  state.bodies.each([&](BodyId, const Body<S>& body) { requireCallbacks(body); });
+
+  state_ = state;
+  state_.bodies.each([&](BodyId id, Body<S>& body) {
+    body.id_ = id;
+    body.owner_ = impl_->serial;
+  });
+  state_.shapes.each([&](ShapeId id, Shape<S>& shape) { shape.attach(id, impl_->serial); });
+  rangeEvents_.clear();
+  dropCache();
+}
+
+template <Scalar S>
+void Space<S>::requireCallbacks(const Body<S>& body) const {
+  require<Fault::MissingCallback>(body.positionFunc() == 0 ||
+                                  Impl::find(impl_->positionFuncs, body.positionFunc()) != nullptr);
+  require<Fault::MissingCallback>(body.velocityFunc() == 0 ||
+                                  Impl::find(impl_->velocityFuncs, body.velocityFunc()) != nullptr);
+}
+
+template <Scalar S>
+void Space<S>::dropCache() {
+  requireUnlocked();
+  impl_->cached = false;
+  impl_->threadsKnown = false;
+}
+
+// Hashes.
+
+template <Scalar S>
+std::uint64_t Space<S>::hash() const {
+  HashSink sink;
+  writeWorld(sink, state_);
+  return sink.finish();
+}
+
+template <Scalar S>
+std::uint64_t Space<S>::hash(BodyId id) const {
+  return hashOf(body(id));
+}
+
+template <Scalar S>
+std::uint64_t Space<S>::hash(ShapeId id) const {
+  return hashOf(shape(id));
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class Space<double>;
+#endif
+template class Space<Fixed>;
+template class Space<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <samestep/bb_tree.h>
+#include <samestep/space.h>
+
+#include "sequential_impulse.h"
+
+namespace samestep {
+
+/// Where a body stood when its shapes were last placed.
+template <Scalar S>
+struct PlacedPose {
+  Vector<S> center{};
+  Vector<S> rotation{};
+  Vector<S> centerOfMass{};
+  BodyType type = BodyType::dynamicBody;
+  bool known = false;
+
+  static PlacedPose of(const Body<S>& body) {
+    return {body.worldCenter(), body.rotation(), body.centerOfMass(), body.type(), true};
+  }
+  friend bool operator==(const PlacedPose&, const PlacedPose&) = default;
+};
+
+/// What a Space has beside its state.
+template <Scalar S>
+struct Space<S>::Impl {
+  // Wiring: who is told. By rising number.
+  template <class Function>
+  struct Registered {
+    CallbackNumber number;
+    Function function;
+    void* data;
+  };
+  struct RegisteredHandler {
+    CallbackNumber number;
+    CollisionHandler<S> handler;
+  };
+  std::vector<Registered<PositionFunc>> positionFuncs;
+  std::vector<Registered<VelocityFunc>> velocityFuncs;
+  std::vector<RegisteredHandler> handlers;
+  StageObserver observer = nullptr;
+  void* observerData = nullptr;
+  std::uint32_t serial = 0;
+
+  struct PostStep {
+    PostStepFunc function;
+    std::uint64_t key;
+    void* data;
+  };
+  std::vector<PostStep> postStep;
+  bool runningPostStep = false;
+
+  // Cache: can be computed again from the state at any time, by body or shape slot.
+  bool cached = false;
+  std::vector<PlacedPose<S>> poses;
+  std::vector<std::uint32_t> firstShape;
+  std::vector<std::uint32_t> lastShape;
+  std::vector<std::uint32_t> nextShape;
+  std::vector<PlacedShape<S>> placed;
+  std::vector<std::uint32_t> planeOffset;
+  std::vector<Plane<S>> planes;
+  // Bodies that may have been moved by hand since the last step, each once.
+  std::vector<std::uint32_t> touched;
+  std::vector<std::uint8_t> isTouched;
+  std::vector<std::uint32_t> planeRoom;
+  BBTree<S> staticTree;
+  BBTree<S> dynamicTree{nullptr, nullptr, &staticTree};
+  // The pairs of each body, as ranges of threadPairs; made on demand.
+  bool threadsKnown = false;
+  std::vector<std::uint32_t> threadStart;
+  std::vector<std::uint32_t> threadPairs;
+  std::vector<std::uint32_t> threadFill;
+
+  // Scratch: of one step.
+  ContactSolver<S> solver;
+  std::vector<std::uint32_t> solverIndex;
+  std::vector<std::uint32_t> solverBodies;
+  std::vector<std::uint8_t> overlapping;
+  std::vector<Pair<S>> nextPairs;
+  std::vector<std::uint8_t> nextOverlapping;
+  std::vector<std::uint8_t> held;
+  std::vector<std::uint32_t> found;
+  std::vector<std::uint32_t> foundInOne;
+
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  template <class Entry>
+  static const Entry* find(const std::vector<Entry>& entries, CallbackNumber number) {
+    for (const Entry& entry : entries) {
+      if (entry.number == number) return &entry;
+    }
+    return nullptr;
+  }
+  template <class Entry>
+  static void set(std::vector<Entry>& entries, const Entry& entry) {
+    for (Entry& present : entries) {
+      if (present.number == entry.number) {
+        present = entry;
+        return;
+      }
+    }
+    entries.push_back(entry);
+  }
+
+  void growBodies(std::uint32_t slots);
+  void growShapes(std::uint32_t slots);
+  void touch(std::uint32_t body);
+  void forgetTouched();
+  void putBox(std::uint32_t shape, bool isStatic, const BB<S>& box, const Vector<S>& velocity);
+  void dropBox(std::uint32_t shape);
+  void clearBoxes();
+  void linkShape(std::uint32_t body, std::uint32_t shape);
+  void unlinkShape(std::uint32_t body, std::uint32_t shape);
+  void prepareShape(std::uint32_t index, const Shape<S>& shape);
+};
+
+}  // namespace samestep
