@@ -363,7 +363,7 @@ double pow(double base, double exponent) {
   if (abs(exponent) < kLeast) return 1.0;
 
   const Pair t = multiply(log2Pair(base), {exponent, 0.0});
-  if (t.high >= 1024.0) return kInfinity;
+  if (t.high > 1025.0) return kInfinity;
   if (t.high < -1076.0) return 0.0;
   const double n = roundToInteger(t.high * 64.0);
   return exponential(n, ((t.high - n * 0x1p-6) + t.low) * detail::kLn2);
