@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Decimal text of double against MPFR and the standard library's own shortest text.
 #include <gtest/gtest.h>
 #include <mpfr.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far the functions of math.h on double are from the truth, by MPFR.
 #include <gtest/gtest.h>
 #include <mpfr.h>

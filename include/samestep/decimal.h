@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <concepts>
@@ -5,8 +6,10 @@
 #include <string_view>
 
 #include "samestep/decimal_status.h"
+#include "samestep/fixed_text.h"
 
-/// Decimal text of double, exact in both directions and the same under every locale and standard library.
+/// Decimal text of double, and by inclusion of fixed-point numbers: exact in both directions and the same
+/// under every locale and standard library.
 namespace samestep {
 
 /// The longest text that parseDecimal reads into a double, in characters: room for every double, and for
