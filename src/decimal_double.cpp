@@ -2,24 +2,16 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cfloat>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 
+#include "require_ieee.h"
 #include "samestep/decimal.h"
-
-#ifdef __FAST_MATH__
-#error \
-    "Samestep's double functions need IEEE-754 as written: build without -ffast-math, or with SAMESTEP_SCALARS=fixed"
-#endif
 
 namespace samestep {
 namespace {
-
-static_assert(FLT_EVAL_METHOD == 0,
-              "double arithmetic must round to double: on x86-32 use -msse2 -mfpmath=sse");
 
 constexpr std::uint64_t kImplicitBit = std::uint64_t{1} << 52;
 

@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include <cfloat>
 #include <cstdint>
 
 #include "math_double_tables.h"
+#include "require_ieee.h"
 #include "samestep/math.h"
-
-#ifdef __FAST_MATH__
-#error \
-    "Samestep's double functions need IEEE-754 as written: build without -ffast-math, or with SAMESTEP_SCALARS=fixed"
-#endif
 
 namespace samestep {
 namespace {
 
 using detail::Pair;
-
-static_assert(FLT_EVAL_METHOD == 0,
-              "double arithmetic must round to double: on x86-32 use -msse2 -mfpmath=sse");
 
 constexpr double kInfinity = __builtin_huge_val();
 constexpr std::uint64_t kSignBit = std::uint64_t{1} << 63;
@@ -151,7 +143,7 @@ ReducedAngle reduce(double angle) {
   const double n = shifted - kShift;
   const double afterFirst = angle - n * detail::kHalfPi1;
   const Pair afterSecond = exactSum(afterFirst, -(n * detail::kHalfPi2));
-  const Pair rest = exactSum(afterSecond.high, afterSecond.low - n * detail::kHalfPi3);
+  const Pair rest = quickSum(afterSecond.high, afterSecond.low - n * detail::kHalfPi3);
   return {rest, static_cast<unsigned>(bitsOf(shifted) & 3)};
 }
 
