@@ -52,6 +52,7 @@ def series(function):
 
 
 out = []
+out.append("// SPDX-License-Identifier: MIT")
 out.append("// Made by scripts/derive_math_double.py. Not edited by hand.")
 out.append("#pragma once\n\n#include <cstdint>\n")
 out.append("namespace samestep::detail {\n")

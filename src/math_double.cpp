@@ -1,21 +1,14 @@
-#include <cfloat>
+// SPDX-License-Identifier: MIT
 #include <cstdint>
 
 #include "math_double_tables.h"
+#include "require_ieee.h"
 #include "samestep/math.h"
-
-#ifdef __FAST_MATH__
-#error \
-    "Samestep's double functions need IEEE-754 as written: build without -ffast-math, or with SAMESTEP_SCALARS=fixed"
-#endif
 
 namespace samestep {
 namespace {
 
 using detail::Pair;
-
-static_assert(FLT_EVAL_METHOD == 0,
-              "double arithmetic must round to double: on x86-32 use -msse2 -mfpmath=sse");
 
 constexpr double kInfinity = __builtin_huge_val();
 constexpr std::uint64_t kSignBit = std::uint64_t{1} << 63;
@@ -150,7 +143,7 @@ ReducedAngle reduce(double angle) {
   const double n = shifted - kShift;
   const double afterFirst = angle - n * detail::kHalfPi1;
   const Pair afterSecond = exactSum(afterFirst, -(n * detail::kHalfPi2));
-  const Pair rest = exactSum(afterSecond.high, afterSecond.low - n * detail::kHalfPi3);
+  const Pair rest = quickSum(afterSecond.high, afterSecond.low - n * detail::kHalfPi3);
   return {rest, static_cast<unsigned>(bitsOf(shifted) & 3)};
 }
 
@@ -363,7 +356,7 @@ double pow(double base, double exponent) {
   if (abs(exponent) < kLeast) return 1.0;
 
   const Pair t = multiply(log2Pair(base), {exponent, 0.0});
-  if (t.high >= 1024.0) return kInfinity;
+  if (t.high > 1025.0) return kInfinity;
   if (t.high < -1076.0) return 0.0;
   const double n = roundToInteger(t.high * 64.0);
   return exponential(n, ((t.high - n * 0x1p-6) + t.low) * detail::kLn2);

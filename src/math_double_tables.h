@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Made by scripts/derive_math_double.py. Not edited by hand.
 #pragma once
 

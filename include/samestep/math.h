@@ -1,16 +1,22 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <concepts>
 
+#include "samestep/fixed.h"
+#include "samestep/fixed_math.h"
 #include "samestep/scalar_results.h"
+#include "samestep/scaled.h"
+#include "samestep/wide.h"
 
-/// The functions of layer 0 on double. The fixed-point number has the same names, so everything above
-/// is written once. Each is one fixed sequence of IEEE-754 operations: the same bits from every compiler
-/// that neither contracts nor reorders them. The short ones are inlined without exception, so that no
-/// client's copy can take the place of the library's at link time; the long ones live in the library.
+/// The functions of layer 0 on double, and by inclusion those on fixed-point numbers: they have the same
+/// names, so that everything above is written once. On double each is one fixed sequence of IEEE-754
+/// operations: the same bits from every compiler that neither contracts nor reorders them. The short ones are
+/// inlined without exception, so that no client's copy can take the place of the library's at link time; the
+/// long ones live in the library.
 ///
-/// Outside their domain they follow IEEE-754 (infinities, one quiet NaN of fixed bits); the engine
-/// never calls them there.
+/// Outside their domain they follow IEEE-754 (infinities, one quiet NaN of fixed bits); the engine never
+/// calls them there.
 namespace samestep {
 
 /// a * b + c. Two roundings on double, one on Fixed.
