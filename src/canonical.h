@@ -91,8 +91,8 @@ void writeWorld(Sink& sink, const World& world) {
   const auto slots = [&](const auto& map) {
     write.put(map.slots());
     for (std::uint32_t i = 0; i < map.slots(); ++i) {
-      write.put(map.generations()[i]);
-      if (map.inUse(i)) write.put(map[i]);
+      write.put(map.generationAt(i));
+      if (map.aliveAt(i)) write.put(map.valueAt(i));
     }
     write.put(static_cast<std::uint32_t>(map.freeList().size()));
     for (const std::uint32_t index : map.freeList()) write.put(index);

@@ -115,7 +115,7 @@ BodyId Space<S>::add(const Body<S>& body) {
   require<Fault::IllegalBody>(within(body.worldCenter(), worldExtent()), "Body's position is invalid.");
 
   const BodyId id = state_.bodies.insert(body);
-  Body<S>& kept = state_.bodies[id.index];
+  Body<S>& kept = state_.bodies.valueAt(id.index);
   kept.id_ = id;
   kept.owner_ = impl_->serial;
   ensureCache();
@@ -151,7 +151,7 @@ void Space<S>::removeWithShapes(BodyId id) {
   requireUnlocked();
   require<Fault::BodyNotFound>(contains(id));
   require<Fault::MainStaticBody>(id != state_.staticBody);
-  while (firstShape(id) != Impl::kNone) remove(state_.shapes.idOf(firstShape(id)));
+  while (firstShape(id) != Impl::kNone) remove(state_.shapes.idAt(firstShape(id)));
   remove(id);
 }
 
@@ -177,7 +177,7 @@ void Space<S>::setType(BodyId id, BodyType type) {
   changed.setType(type);
   if (type == BodyType::dynamicBody) {
     for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
-      checkShape(state_.shapes[i], changed);
+      checkShape(state_.shapes.valueAt(i), changed);
     }
     const MassProperties<S> mass = massOfShapes(id, {}, nullptr);
     if (mass.mass > S(0)) changed.setMassProperties(mass);
@@ -213,10 +213,10 @@ MassProperties<S> Space<S>::massOfShapes(BodyId id, ShapeId replaced, const Shap
       }
     };
     for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
-      if (state_.shapes.idOf(i) == replaced) {
+      if (state_.shapes.idAt(i) == replaced) {
         if (by != nullptr) visitShape(*by);
       } else {
-        visitShape(state_.shapes[i]);
+        visitShape(state_.shapes.valueAt(i));
       }
     }
     if (!replaced.valid() && by != nullptr) visitShape(*by);
@@ -252,11 +252,11 @@ ShapeId Space<S>::add(const Shape<S>& shape) {
   const BodyId bodyId = shape.body();
   if (holder.isDynamic() && shape.mass() > S(0)) {
     const MassProperties<S> mass = massOfShapes(bodyId, {}, &shape);
-    state_.bodies[bodyId.index].setMassProperties(mass);
+    state_.bodies.valueAt(bodyId.index).setMassProperties(mass);
   }
 
   const ShapeId id = state_.shapes.insert(shape);
-  Shape<S>& kept = state_.shapes[id.index];
+  Shape<S>& kept = state_.shapes.valueAt(id.index);
   kept.attach(id, impl_->serial);
   impl_->growShapes(state_.shapes.slots());
   impl_->linkShape(bodyId.index, id.index);
@@ -272,9 +272,9 @@ void Space<S>::remove(ShapeId id) {
   requireUnlocked();
   require<Fault::ShapeNotFound>(contains(id));
   ensureCache();
-  const BodyId bodyId = state_.shapes[id.index].body();
-  Body<S>& holder = state_.bodies[bodyId.index];
-  const bool hadMass = state_.shapes[id.index].mass() > S(0);
+  const BodyId bodyId = state_.shapes.valueAt(id.index).body();
+  Body<S>& holder = state_.bodies.valueAt(bodyId.index);
+  const bool hadMass = state_.shapes.valueAt(id.index).mass() > S(0);
   if (holder.isDynamic() && hadMass) holder.setMassProperties(massOfShapes(bodyId, id, nullptr));
 
   dropPairs(bodyId, id);
@@ -301,7 +301,7 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
   if (!sameGeometry || !sameMass) {
     requireUnlocked();
     require<Fault::DegenerateShape>(next.wellFormed());
-    Body<S>& holder = state_.bodies[kept.body().index];
+    Body<S>& holder = state_.bodies.valueAt(kept.body().index);
     checkShape(next, holder);
     ensureCache();
     if (holder.isDynamic() && !sameMass) holder.setMassProperties(massOfShapes(kept.body(), id, &next));

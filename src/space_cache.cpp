@@ -121,7 +121,7 @@ void Space<S>::ensureCache() const {
 template <Scalar S>
 void Space<S>::placeShapesOf(std::uint32_t bodyIndex) const {
   Impl& impl = *impl_;
-  const Body<S>& holder = state_.bodies[bodyIndex];
+  const Body<S>& holder = state_.bodies.valueAt(bodyIndex);
   const PlacedPose<S> pose = PlacedPose<S>::of(holder);
   if (impl.poses[bodyIndex] == pose) return;
   impl.poses[bodyIndex] = pose;
@@ -138,7 +138,7 @@ template <Scalar S>
 void Space<S>::refreshTouched() {
   ensureCache();
   for (const std::uint32_t body : impl_->touched) {
-    if (state_.bodies.inUse(body)) placeShapesOf(body);
+    if (state_.bodies.aliveAt(body)) placeShapesOf(body);
   }
 }
 
@@ -153,8 +153,8 @@ std::span<const std::uint32_t> Space<S>::threadOf(BodyId id) {
       for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
         const Pair<S>& pair = state_.pairs[i];
         if (!touching(pair)) continue;
-        visit(state_.shapes[pair.a.index].body().index, i);
-        visit(state_.shapes[pair.b.index].body().index, i);
+        visit(state_.shapes.valueAt(pair.a.index).body().index, i);
+        visit(state_.shapes.valueAt(pair.b.index).body().index, i);
       }
     };
     eachEnd([&](std::uint32_t body, std::uint32_t) { ++impl.threadStart[body + 1]; });

@@ -12,9 +12,9 @@ bool Space<S>::touching(const Pair<S>& pair) const {
 
 template <Scalar S>
 Arbiter<S> Space<S>::arbiterOf(Pair<S>& pair) {
-  const Shape<S>& shapeA = state_.shapes[pair.a.index];
-  const Shape<S>& shapeB = state_.shapes[pair.b.index];
-  return {pair, state_.bodies[shapeA.body().index], state_.bodies[shapeB.body().index], shapeA, shapeB};
+  const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
+  const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
+  return {pair, state_.bodies.valueAt(shapeA.body().index), state_.bodies.valueAt(shapeB.body().index), shapeA, shapeB};
 }
 
 /// The handler bound to a pair of types in this order, to a type, or to all; null if none is.
@@ -158,7 +158,7 @@ template <Scalar S>
 void Space<S>::dropPairs(BodyId body, ShapeId shape) {
   const auto meant = [&](const Pair<S>& pair) {
     const auto is = [&](ShapeId id) {
-      return shape.valid() ? id == shape : state_.shapes[id.index].body() == body;
+      return shape.valid() ? id == shape : state_.shapes.valueAt(id.index).body() == body;
     };
     return is(pair.a) || is(pair.b);
   };
@@ -178,7 +178,7 @@ void Space<S>::filterArbiters(BodyId body, ShapeId shape) {
   requireUnlocked();
   require<Fault::BodyNotFound>(contains(body));
   require<Fault::ShapeNotFound>(!shape.valid() ||
-                                (contains(shape) && state_.shapes[shape.index].body() == body));
+                                (contains(shape) && state_.shapes.valueAt(shape.index).body() == body));
   dropPairs(body, shape);
 }
 

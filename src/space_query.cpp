@@ -30,10 +30,10 @@ void Space<S>::pointQuery(const Vector<S>& point, S distance, const ShapeFilter&
   const BB<S> box = BB<S>::forCircle(point, distance);
   collectFound([&](const BBTree<S>& tree, std::vector<IndexKey>& keys) { tree.collectIn(box, keys); });
   for (const std::uint32_t index : impl_->found) {
-    if (!accepts(state_.shapes[index].filter(), filter)) continue;
+    if (!accepts(state_.shapes.valueAt(index).filter(), filter)) continue;
     const PointQueryInfo<S> info = samestep::pointQuery(impl_->placed[index], point);
     if (info.distance <= distance) {
-      hits.push_back({state_.shapes.idOf(index), info.point, info.distance, info.gradient});
+      hits.push_back({state_.shapes.idAt(index), info.point, info.distance, info.gradient});
     }
   }
 }
@@ -50,9 +50,9 @@ void Space<S>::segmentQuery(const Vector<S>& start, const Vector<S>& end, S radi
     tree.collectAlong(start, end, radius, keys);
   });
   for (const std::uint32_t index : impl_->found) {
-    if (!accepts(state_.shapes[index].filter(), filter)) continue;
+    if (!accepts(state_.shapes.valueAt(index).filter(), filter)) continue;
     const SegmentQueryInfo<S> info = samestep::segmentQuery(impl_->placed[index], start, end, radius);
-    if (info.hit) hits.push_back({state_.shapes.idOf(index), info.point, info.normal, info.alpha});
+    if (info.hit) hits.push_back({state_.shapes.idAt(index), info.point, info.normal, info.alpha});
   }
 }
 
@@ -65,8 +65,8 @@ void Space<S>::boxQuery(const BB<S>& box, const ShapeFilter& filter, std::vector
   refreshTouched();
   collectFound([&](const BBTree<S>& tree, std::vector<IndexKey>& keys) { tree.collectIn(box, keys); });
   for (const std::uint32_t index : impl_->found) {
-    if (accepts(state_.shapes[index].filter(), filter) && intersects(impl_->placed[index].box, box)) {
-      hits.push_back(state_.shapes.idOf(index));
+    if (accepts(state_.shapes.valueAt(index).filter(), filter) && intersects(impl_->placed[index].box, box)) {
+      hits.push_back(state_.shapes.idAt(index));
     }
   }
 }

@@ -41,8 +41,8 @@ void Space<S>::checkStep(S dt) const {
   requireUnlocked();
   require<Fault::ValueOutOfRange>(dt > S(0) && dt <= kMaxTimeStep<S>);
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
-    if (!state_.bodies.inUse(i)) continue;
-    const Body<S>& body = state_.bodies[i];
+    if (!state_.bodies.aliveAt(i)) continue;
+    const Body<S>& body = state_.bodies.valueAt(i);
     const char* reason = body.cannotStep();
     if (reason != nullptr) [[unlikely]] fail<Fault::IllegalBody>(reason);
     if (body.positionFunc() != 0 || body.velocityFunc() != 0) [[unlikely]] requireCallbacks(body);
@@ -52,8 +52,8 @@ void Space<S>::checkStep(S dt) const {
 template <Scalar S>
 void Space<S>::integratePositions(S dt) {
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
-    if (!state_.bodies.inUse(i)) continue;
-    Body<S>& body = state_.bodies[i];
+    if (!state_.bodies.aliveAt(i)) continue;
+    Body<S>& body = state_.bodies.valueAt(i);
     if (body.type() == BodyType::staticBody) continue;
     if (body.positionFunc() != 0) [[unlikely]] {
       const auto* entry = Impl::find(impl_->positionFuncs, body.positionFunc());
@@ -72,7 +72,7 @@ void Space<S>::updateShapes() {
   ensureCache();
   impl_->forgetTouched();
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
-    if (state_.bodies.inUse(i)) placeShapesOf(i);
+    if (state_.bodies.aliveAt(i)) placeShapesOf(i);
   }
   endStage(Stage::updateShapes);
 }
@@ -92,8 +92,8 @@ Pair<S> newPair(ShapeId a, ShapeId b) {
 /// Whether two shapes whose boxes overlap may collide at all. MIS: queryReject
 template <Scalar S>
 bool Space<S>::mayCollide(std::uint32_t a, std::uint32_t b) const {
-  const Shape<S>& shapeA = state_.shapes[a];
-  const Shape<S>& shapeB = state_.shapes[b];
+  const Shape<S>& shapeA = state_.shapes.valueAt(a);
+  const Shape<S>& shapeB = state_.shapes.valueAt(b);
   return shapeA.body() != shapeB.body() && accepts(shapeA.filter(), shapeB.filter());
 }
 
@@ -133,7 +133,7 @@ void Space<S>::findPairs() {
       ++old;
     } else {
       startCopying();
-      impl.nextPairs.push_back(newPair<S>(state_.shapes.idOf(a), state_.shapes.idOf(b)));
+      impl.nextPairs.push_back(newPair<S>(state_.shapes.idAt(a), state_.shapes.idAt(b)));
     }
     impl.overlapping.push_back(1);
   }
@@ -160,11 +160,11 @@ void Space<S>::collidePair(Pair<S>& pair) {
   if (info.count == 0) return;
   const bool wanted = applyCollision(pair, info);
   pair.stamp = state_.stamp;
-  const Shape<S>& shapeA = state_.shapes[pair.a.index];
-  const Shape<S>& shapeB = state_.shapes[pair.b.index];
+  const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
+  const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
   const Scaled<S> immovable{};
-  const bool moves = state_.bodies[shapeA.body().index].inverseMass() != immovable ||
-                     state_.bodies[shapeB.body().index].inverseMass() != immovable;
+  const bool moves = state_.bodies.valueAt(shapeA.body().index).inverseMass() != immovable ||
+                     state_.bodies.valueAt(shapeB.body().index).inverseMass() != immovable;
   if (wanted && moves && !shapeA.sensor() && !shapeB.sensor()) {
     pair.solved = 1;
   } else {
@@ -179,8 +179,8 @@ void Space<S>::collidePair(Pair<S>& pair) {
 /// Takes over a collision and asks the callbacks. MIS: arbiterUpdate
 template <Scalar S>
 bool Space<S>::applyCollision(Pair<S>& pair, const CollisionInfo<S>& info) {
-  const Shape<S>& shapeA = state_.shapes[pair.a.index];
-  const Shape<S>& shapeB = state_.shapes[pair.b.index];
+  const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
+  const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
   Contact<S> contacts[kMaxContactsPerPair];
   for (int i = 0; i < info.count; ++i) {
     Contact<S>& contact = contacts[i];
@@ -261,9 +261,9 @@ void Space<S>::preStep(S dt) {
   };
   for (const Pair<S>& pair : state_.pairs) {
     if (pair.solved == 0) continue;
-    const std::uint32_t a = state_.shapes[pair.a.index].body().index;
-    const std::uint32_t b = state_.shapes[pair.b.index].body().index;
-    impl.solver.preStep(pair, solverIndexOf(a), solverIndexOf(b), state_.bodies[a], state_.bodies[b],
+    const std::uint32_t a = state_.shapes.valueAt(pair.a.index).body().index;
+    const std::uint32_t b = state_.shapes.valueAt(pair.b.index).body().index;
+    impl.solver.preStep(pair, solverIndexOf(a), solverIndexOf(b), state_.bodies.valueAt(a), state_.bodies.valueAt(b),
                         collisionSlop(), biasRate);
   }
   endStage(Stage::preStep);
@@ -274,8 +274,8 @@ void Space<S>::integrateVelocities(S dt) {
   const S kept = damping() == S(1) ? S(1) : pow(damping(), dt);
   const Vector<S> pull = gravity();
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
-    if (!state_.bodies.inUse(i)) continue;
-    Body<S>& body = state_.bodies[i];
+    if (!state_.bodies.aliveAt(i)) continue;
+    Body<S>& body = state_.bodies.valueAt(i);
     if (body.velocityFunc() != 0) [[unlikely]] {
       const auto* entry = Impl::find(impl_->velocityFuncs, body.velocityFunc());
       entry->function(body, pull, kept, dt, entry->data);
@@ -293,7 +293,7 @@ void Space<S>::solve(S dtCoefficient) {
   Impl& impl = *impl_;
   ContactSolver<S>& solver = impl.solver;
   for (const std::uint32_t index : impl.solverBodies) {
-    const Body<S>& body = state_.bodies[index];
+    const Body<S>& body = state_.bodies.valueAt(index);
     solver.bodies.push_back(
         {body.velocity_, body.angularVelocity_, body.velocityBias_, body.angularVelocityBias_});
   }
@@ -317,7 +317,7 @@ void Space<S>::solve(S dtCoefficient) {
   }
   for (std::size_t i = 0; i < impl.solverBodies.size(); ++i) {
     const std::uint32_t index = impl.solverBodies[i];
-    Body<S>& body = state_.bodies[index];
+    Body<S>& body = state_.bodies.valueAt(index);
     if (!body.isDynamic()) continue;
     const SolverBody<S>& solved = solver.bodies[i];
     impl.held[index] |= body.holdVelocity({solved.velocity, solved.angularVelocity});
@@ -331,7 +331,7 @@ template <Scalar S>
 void Space<S>::listRangeEvents() {
   rangeEvents_.clear();
   for (std::uint32_t i = 0; i < impl_->held.size(); ++i) {
-    if (impl_->held[i] != 0) [[unlikely]] rangeEvents_.push_back({state_.bodies.idOf(i), impl_->held[i]});
+    if (impl_->held[i] != 0) [[unlikely]] rangeEvents_.push_back({state_.bodies.idAt(i), impl_->held[i]});
   }
   endStage(Stage::callbacks);
 }

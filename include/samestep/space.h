@@ -264,8 +264,8 @@ class Space {
   /// MIS: bodyAccumulateMassFromShapes
   void accumulateMassFromShapes(BodyId id);
 
-  std::size_t bodyCount() const { return state_.bodies.size(); }
-  std::size_t shapeCount() const { return state_.shapes.size(); }
+  std::uint32_t bodyCount() const { return state_.bodies.size(); }
+  std::uint32_t shapeCount() const { return state_.shapes.size(); }
 
   /// Calls visit(const Body<S>&) for each body by rising id. Locks the Space. MIS: spaceEachBody
   template <class Visit>
@@ -295,7 +295,7 @@ class Space {
   template <class Visit>
   void eachShape(BodyId id, Visit&& visit) const {
     for (std::uint32_t index = firstShape(id); index != ShapeId::kNoIndex; index = nextShape(index)) {
-      visit(state_.shapes[index]);
+      visit(state_.shapes.valueAt(index));
     }
   }
   /// Calls visit(Arbiter<S>&) for each touching pair of shapes, by rising ids. Locks the Space.
