@@ -75,7 +75,8 @@ RULES = [
          "an address differs from run to run; use an id or index, or say '// not in results: ...'",
          marker="not in results:"),
     Rule("std-hash", r"\bstd::hash\b",
-         "std::hash differs between libraries and word sizes; write the 64-bit hash out"),
+         "std::hash differs between libraries and word sizes; write the 64-bit hash out, or say "
+         "'// not in results: ...' where it serves users only", marker="not in results:"),
     Rule("parallel-sum", r"\bstd::(?:transform_)?reduce\s*\(|\bstd::execution\b",
          "order of the sum is not stated; write the loop, or use std::accumulate"),
     Rule("decimal", r"\b(?:std::)?(?:stod|stof|stold|strto(?:d|f|ld)|atof|sscanf)\s*\(",
