@@ -5,10 +5,6 @@
 #include "require_ieee.h"
 #include "samestep/math.h"
 
-#ifdef __FAST_MATH__
-#error "double needs IEEE-754 as written: build without -ffast-math, or with SAMESTEP_SCALARS=fixed"
-#endif
-
 namespace samestep {
 namespace {
 
