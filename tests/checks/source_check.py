@@ -1,0 +1,362 @@
+#!/usr/bin/env python3
+"""Rejects what breaks determinism or the layering, and leftovers, with the replacement in the message.
+
+Usage: source_check.py ROOT      prints FILE:LINE: what is wrong; exits 1 if anything is.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ENGINE_FOLDERS = ("include", "src", "fixed", "replay", "lockstep")
+# Looked through for leftovers and machine paths only.
+OTHER_FOLDERS = ("tests", "bench", "fuzz", "examples", "scripts", "cmake", "docs")
+CODE_SUFFIXES = (".h", ".cpp")
+TEXT_SUFFIXES = CODE_SUFFIXES + (".txt", ".cmake", ".py", ".md", ".sh", "")
+MAX_COLUMNS = 110
+
+# Where the square root may be taken, the one function of libm that IEEE-754 rounds correctly: the double
+# one, and the estimate behind the exact integer one.
+SQRT_FILES = ("include/samestep/math.h", "fixed/include/samestep/way.h")
+
+LIBM = (
+    "a?(?:sin|cos|tan)h?|atan2|exp|exp2|expm1|log|log2|log10|log1p|logb|ilogb|pow|cbrt|hypot|fma|lerp|"
+    "fmod|remainder|remquo|floor|ceil|trunc|l?l?round|l?l?rint|nearbyint|ldexp|frexp|modf|scalbl?n|"
+    "nextafter|nexttoward|fmin|fmax|fdim|fabs|copysign|erfc?|[lt]gamma|isnan|isinf|isfinite|signbit"
+)
+# Ours are called unqualified, so only names that we do not define are caught without std::.
+LIBM_BARE = "a?(?:sin|cos|tan)h?|expm1|log|log10|log1p|cbrt|hypot|fma|fmod|ldexp|frexp|floor|ceil"
+NOT_QUALIFIED = r"(?<![\w.:>~])"
+ORDERING = "sort|nth_element|partial_sort(?:_copy)?|partition|make_heap|push_heap|pop_heap|sort_heap"
+UNSIZED = (
+    r"(?:std::)?(?:size_t|ptrdiff_t|u?int_fast\d+_t|u?intptr_t|wchar_t)|"
+    r"(?:unsigned\s+|signed\s+)?long(?:\s+(?:unsigned|signed|int|long))*"
+)
+
+
+class Rule:
+    """One forbidden pattern, looked for line by line in code without comments and strings.
+
+    `marker`: a comment with this text on the line or the line before, followed by a reason, permits it.
+    """
+
+    def __init__(self, name, pattern, message, marker=None, exempt=()):
+        self.name = name
+        self.pattern = re.compile(pattern)
+        self.message = message
+        self.marker = marker
+        self.exempt = exempt
+
+
+RULES = [
+    Rule("unordered", r"\bunordered_(?:map|set|multimap|multiset)\b",
+         "order of an unordered container differs between libraries; use HashSet (insertion order) or a "
+         "sorted vector"),
+    Rule("libm", rf"\bstd::(?:{LIBM})\s*\(|(?<![\w>:])::(?:{LIBM})\s*\(|__builtin_(?:{LIBM})[fl]?\s*\(|"
+         rf"{NOT_QUALIFIED}(?:{LIBM_BARE})\s*\(",
+         "libm differs between platforms; use samestep::sincos, atan2, exp, log2, pow (math.h, fixed_math.h), "
+         "or compare and select"),
+    Rule("cmath", r"#\s*include\s*<(?:cmath|math\.h|complex|tgmath\.h|ctgmath)>",
+         "libm differs between platforms; include <samestep/math.h>", exempt=SQRT_FILES),
+    Rule("sqrt", r"\bstd::sqrt\w?\s*\(|(?<![\w>:])::sqrt\w?\s*\(|__builtin_sqrt\w?\s*\(|_mm\w*_sqrt_\w+",
+         "call samestep::sqrt, so that there is one square root", exempt=SQRT_FILES),
+    Rule("sort", rf"\bstd::(?:ranges::)?(?:{ORDERING})\s*\(|\bstd::priority_queue\b",
+         "order of equal elements differs between libraries; use std::stable_sort, or say in a comment "
+         "'// total order: ...' why no two elements are equal", marker="total order:"),
+    Rule("clock", r"\bstd::chrono\b|#\s*include\s*<(?:chrono|ctime|time\.h|sys/time\.h)>|"
+         r"\b(?:clock_gettime|gettimeofday|__rdtsc|std::time|std::clock)\s*\(|\b(?:steady|system)_clock\b",
+         "time is no input of the engine; count ticks, or say '// not in results: ...' where it is only shown",
+         marker="not in results:"),
+    Rule("random", r"\brandom_device\b|\bstd::\w+_distribution\b|\bdefault_random_engine\b|"
+         r"\bstd::(?:shuffle|sample|rand|srand)\b|\brandom_shuffle\b|" + NOT_QUALIFIED + r"s?rand\s*\(",
+         "differs between machines or libraries; draw from std::mt19937_64's raw numbers or take a seed"),
+    Rule("address", r"\bu?intptr_t\b|\bstd::(?:hash|less|greater|owner_less)<[^<>]*\*\s*>|\bhash_code\s*\(",
+         "an address differs from run to run; use an id or index, or say '// not in results: ...'",
+         marker="not in results:"),
+    Rule("std-hash", r"\bstd::hash\b",
+         "std::hash differs between libraries and word sizes; write the 64-bit hash out, or say "
+         "'// not in results: ...' where it serves users only", marker="not in results:"),
+    Rule("parallel-sum", r"\bstd::(?:transform_)?reduce\s*\(|\bstd::execution\b",
+         "order of the sum is not stated; write the loop, or use std::accumulate"),
+    Rule("decimal", r"\b(?:std::)?(?:stod|stof|stold|strto(?:d|f|ld)|atof|sscanf)\s*\(",
+         "goes by locale and through libm; use parseDecimal"),
+    Rule("long-double", r"\blong\s+double\b", "its width differs between platforms; use double or Fixed"),
+    Rule("macro", r"#\s*define\s+\w+\(", "no function-like macros; write a constexpr function or template"),
+]
+HEAVY_HEADERS = re.compile(
+    r"#\s*include\s*<(functional|memory|iostream|ranges|regex|sstream|fstream|iomanip|random|thread|map|set)>")
+LEFTOVER = re.compile(r"\b(?:FIX" + r"ME|TO" + r"DO|XX" + r"X|HA" + r"CK)\b")
+SKIPPED_TEST = re.compile(r"\bGTEST_" + r"SKIP\b|\bDISA" + r"BLED_")
+MACHINE_PATH = re.compile(r"(?<![\w.}\)])/(?:work|root|home|Users|tmp|mnt|scratch)/\w")
+INCLUDE = re.compile(r'#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def split_comments(text):
+    """The code with comments and the insides of literals blanked, and the comment text of each line."""
+    code = []
+    comments = [[] for _ in range(text.count("\n") + 1)]
+    line = 0
+    token = re.compile(
+        r'//[^\n]*|/\*.*?\*/|R"(?P<tag>[^(\s]*)\(.*?\)(?P=tag)"|"(?:\\.|[^"\\\n])*"|'
+        r"(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'", re.S)
+    end = 0
+    for match in token.finditer(text):
+        before = text[end:match.start()]
+        code.append(before)
+        line += before.count("\n")
+        found = match.group()
+        if found.startswith("/"):
+            for offset, part in enumerate(found.split("\n")):
+                comments[line + offset].append(part)
+            code.append(re.sub(r"[^\n]", " ", found))
+        elif text[:match.start()].rpartition("\n")[2].lstrip().startswith("#"):
+            code.append(found)  # the name of an included file
+        else:
+            code.append(found[0] + re.sub(r"[^\n]", " ", found[1:-1]) + found[-1])
+        line += found.count("\n")
+        end = match.end()
+    code.append(text[end:])
+    return "".join(code).split("\n"), [" ".join(parts) for parts in comments]
+
+
+class Layers:
+    """The table of layers.txt."""
+
+    def __init__(self, table):
+        self.names = []
+        self.modules = {}
+        self.folders = {}
+        for row in table.splitlines():
+            words = row.split("#")[0].split()
+            if not words:
+                continue
+            for word in words[1:]:
+                (self.folders if word.endswith("/") else self.modules)[word.rstrip("/")] = len(self.names)
+            self.names.append(words[0])
+
+    def of(self, path):
+        """Layer of a file, or None where the table does not name it."""
+        stem = path.name.split(".")[0]
+        if path.parts[0] in self.folders and stem not in self.modules:
+            return self.folders[path.parts[0]]
+        while stem:
+            if stem in self.modules:
+                return self.modules[stem]
+            stem = stem.rpartition("_")[0]
+        return None
+
+
+class Check:
+    def __init__(self, root, layers=None):
+        self.root = Path(root)
+        self.layers = layers or Layers((HERE / "layers.txt").read_text())
+        self.problems = []
+        self.includes = {}
+
+    def report(self, path, line, rule, message):
+        self.problems.append(f"{path}:{line + 1}: [{rule}] {message}")
+
+    def files(self, folders, suffixes):
+        for folder in folders:
+            for path in sorted((self.root / folder).rglob("*")):
+                if path.is_file() and path.suffix in suffixes and "__pycache__" not in path.parts:
+                    yield path.relative_to(self.root)
+
+    def run(self):
+        engine = []
+        for path in self.files(ENGINE_FOLDERS, CODE_SUFFIXES):
+            if "tests" in path.parts:
+                continue
+            engine.append(path)
+            text = self.read(path)
+            code, comments = split_comments(text)
+            self.check_rules(path, code, comments)
+            if path.suffix == ".h":
+                self.check_header(path, code, comments)
+            self.check_includes(path, code)
+        self.check_cycles()
+        for path in self.files(ENGINE_FOLDERS + OTHER_FOLDERS, TEXT_SUFFIXES):
+            self.check_leftovers(path, self.read(path))
+        for path in sorted(self.root.iterdir()):
+            if path.is_file() and path.suffix in (".md", ".txt", ".json"):
+                self.check_leftovers(path.relative_to(self.root), self.read(path.name))
+        return engine
+
+    def read(self, path):
+        return (self.root / path).read_text(encoding="utf-8", errors="replace")
+
+    def check_rules(self, path, code, comments):
+        for rule in RULES:
+            if path.as_posix() in rule.exempt:
+                continue
+            for number, line in enumerate(code):
+                if rule.pattern.search(line) and not permitted(rule.marker, comments, number):
+                    self.report(path, number, rule.name, rule.message)
+
+    def check_header(self, path, code, comments):
+        if not any(re.match(r"\s*#\s*(?:pragma\s+once|ifndef\s+\w+)", line) for line in code):
+            self.report(path, 0, "guard", "no include guard; begin with #pragma once")
+        if "include" not in path.parts:
+            return
+        for number, line in enumerate(code):
+            heavy = HEAVY_HEADERS.search(line)
+            if heavy:
+                self.report(path, number, "heavy-header",
+                            f"<{heavy.group(1)}> in a public header makes every user compile it; move it to the "
+                            "source, or take a template parameter, span or plain function pointer")
+        for number, member in data_members(code):
+            if re.search(rf"\b(?:{UNSIZED})\b", member) and not permitted("not state:", comments, number):
+                self.report(path, number, "unsized-member",
+                            "its width differs between platforms; use std::int32_t, std::uint64_t, ..., or say "
+                            "'// not state: ...' why it is never saved or hashed")
+
+    def check_includes(self, path, code):
+        own = self.layers.of(path)
+        if own is None:
+            self.report(path, 0, "layer", "not in the table of layers; add it to tests/checks/layers.txt")
+            return
+        for number, line in enumerate(code):
+            match = INCLUDE.search(line)
+            target = self.resolve(path, match.group(2)) if match else None
+            if target is None:
+                continue
+            self.includes.setdefault(path, []).append((number, target))
+            other = self.layers.of(target)
+            if other is not None and other > own:
+                self.report(path, number, "upward-include",
+                            f"layer '{self.layers.names[own]}' includes '{self.layers.names[other]}' above it; "
+                            "name it by id, or move what is needed down")
+
+    def resolve(self, path, name):
+        """The file of this project that an include names, or None."""
+        beside = [path.parent / name]
+        searched = [Path(folder) / name for folder in
+                    ("include", "fixed/include", "replay/include", "lockstep/include", "src", "replay", "lockstep")]
+        for candidate in beside + searched:
+            if (self.root / candidate).is_file():
+                return candidate
+        return None
+
+    def check_cycles(self):
+        done = set()
+
+        def visit(path, trail):
+            if path in trail:
+                return [*trail[trail.index(path):], path]
+            if path in done:
+                return None
+            for number, target in self.includes.get(path, []):
+                cycle = visit(target, [*trail, path])
+                if cycle:
+                    return cycle
+            done.add(path)
+            return None
+
+        for path in sorted(self.includes):
+            cycle = visit(path, [])
+            if cycle:
+                self.report(path, 0, "include-cycle", " -> ".join(map(str, cycle)) + "; name one of them by id")
+                return
+
+    def check_leftovers(self, path, text):
+        is_code = path.suffix in CODE_SUFFIXES
+        lines = text.split("\n")
+        for number, line in enumerate(lines):
+            if LEFTOVER.search(line):
+                self.report(path, number, "leftover", "finish it, or file an issue and say in the code what holds")
+            if is_code and SKIPPED_TEST.search(line):
+                self.report(path, number, "skipped-test", "a test runs or is removed")
+            # The message of an #error cannot be broken.
+            if is_code and len(line) > MAX_COLUMNS and "#error" not in lines[number - 1]:
+                self.report(path, number, "long-line", f"{len(line)} columns, {MAX_COLUMNS} at most")
+            if MACHINE_PATH.search(line):
+                self.report(path, number, "machine-path", "a path of one machine; make it relative, or a mktemp")
+
+
+def permitted(marker, comments, number):
+    """Whether a comment with the marker and a reason stands on this line or the one before."""
+    if marker is None:
+        return False
+    near = comments[number] if number == 0 else comments[number - 1] + " " + comments[number]
+    return re.search(re.escape(marker) + r"\s*\w", near) is not None
+
+
+def data_members(code):
+    """(line, declaration) for each data member declared directly in a class body."""
+    scopes = []  # "class", "value" (a member's initial value in braces) or "other"
+    pending = ""
+    start = 0
+    for number, line in enumerate(code):
+        if line.lstrip().startswith("#"):
+            continue
+        for character in line + "\n":
+            inside = scopes[-1] if scopes else "other"
+            if inside == "value" and character not in "{}":
+                continue
+            if not pending.strip():
+                start = number
+            if character == "{":
+                scopes.append(scope_after(pending, inside))
+                if scopes[-1] != "value":
+                    pending = ""
+            elif character == "}":
+                if scopes and scopes.pop() != "value":
+                    pending = ""
+            elif character == ";":
+                if inside == "class" and is_data(pending):
+                    yield start, pending
+                pending = ""
+            elif character == ":" and re.fullmatch(r"\s*(?:public|private|protected)\s*", pending):
+                pending = ""
+            else:
+                pending += character
+
+
+def scope_after(declaration, inside):
+    """What a brace behind this text opens."""
+    text = re.sub(r"\balignas\s*\([^)]*\)", " ", strip_template(declaration))
+    if inside == "value":
+        return "value"
+    if re.search(r"\b(?:class|struct|union)\b", text) and not re.search(r"\benum\b|\)", text):
+        return "class"
+    if inside == "class" and "(" not in text and not re.search(r"\b(?:enum|requires|operator)\b", text):
+        return "value"
+    return "other"
+
+
+def strip_template(declaration):
+    """A declaration without its leading template<...>, whose `class` names no class."""
+    text = declaration.lstrip()
+    if not text.startswith("template"):
+        return declaration
+    depth = 0
+    for place, character in enumerate(text):
+        depth += (character == "<") - (character == ">")
+        if character == ">" and depth == 0:
+            return strip_template(text[place + 1:])
+    return text
+
+
+def is_data(declaration):
+    text = strip_template(declaration)
+    if re.search(r"\b(?:static|using|typedef|friend|enum|operator|class|struct|extern|concept)\b", text):
+        return False
+    return "(" not in text.split("=")[0] and bool(re.search(r"\w\s+\*?\w+|>\s*\w+", text))
+
+
+def main():
+    root = sys.argv[1] if len(sys.argv) > 1 else HERE.parents[1]
+    check = Check(root)
+    files = check.run()
+    for problem in check.problems:
+        print(problem)
+    if not files:
+        print("no source files found under", root)
+        return 1
+    print(f"{len(files)} engine files, {len(check.problems)} problems")
+    return 1 if check.problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
