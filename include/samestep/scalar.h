@@ -3,7 +3,11 @@
 
 #include <cstdint>
 
+#include <samestep/fixed.h>
+#include <samestep/fixed_math.h>
 #include <samestep/math.h>
+#include <samestep/scaled.h>
+#include <samestep/wide.h>
 
 namespace samestep {
 

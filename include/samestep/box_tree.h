@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <samestep/error.h>
+
+namespace samestep {
+
+/// Boxes of the tree live on a grid of 2^-kGridBits m, rounded outward: half the memory of boxes of numbers,
+/// and one integer tree for every scalar. Coordinates are clamped to +-kGridLimit, which only ever adds
+/// overlaps.
+inline constexpr int kGridBits = 10;
+inline constexpr std::int32_t kGridLimit = (1 << 30) - 1;
+
+/// Edges included; in grid units.
+struct GridBox {
+  std::int32_t left;
+  std::int32_t bottom;
+  std::int32_t right;
+  std::int32_t top;
+
+  friend constexpr bool operator==(const GridBox&, const GridBox&) = default;
+};
+
+/// One branch instead of four: an overlap has four differences that are not negative.
+[[gnu::always_inline]] inline constexpr bool overlaps(const GridBox& a, const GridBox& b) {
+  return ((a.right - b.left) | (b.right - a.left) | (a.top - b.bottom) | (b.top - a.bottom)) >= 0;
+}
+
+/// A thick segment on the grid, for queries. `overlaps` may report a box that it misses by a few units, but
+/// never misses one that it touches.
+struct GridSegment {
+  GridBox bounds;     ///< Of the segment and its thickness.
+  std::int32_t x[2];  ///< The ends, rounded down.
+  std::int32_t y[2];
+  std::int32_t reach;  ///< Half the thickness, rounded up.
+  bool endsOnGrid;     ///< Whether no end was clamped; otherwise only the bounds count.
+};
+bool overlaps(const GridSegment& segment, const GridBox& box);
+
+/// A binary tree of boxes in flat arrays: the boxes of both children stand in their parent, leaves are keys.
+/// Grown by perimeter, with rotations; rebuilt from its leaves when it gets too high. Its shape depends on
+/// the history of calls, so no order of results is promised.
+class BoxTree {
+ public:
+  using Key = std::uint32_t;
+  /// A node's index, or kLeaf | key.
+  using Ref = std::uint32_t;
+
+  static constexpr Ref kLeaf = 0x80000000u;
+  static constexpr Ref kNone = 0x7fffffffu;
+  /// Keys are below this: they index arrays.
+  static constexpr Key kMaxKeys = 1u << 24;
+  /// A higher tree is rebuilt.
+  static constexpr std::uint32_t kMaxHeight = 60;
+
+  explicit BoxTree(std::uint32_t maxLeaves = kMaxKeys);
+
+  std::uint32_t count() const { return count_; }
+  bool contains(Key key) const { return key < places_.size() && places_[key] != kNone; }
+  /// @pre contains(key)
+  const GridBox& box(Key key) const { return nodes_[places_[key] >> 1].box[places_[key] & 1]; }
+  /// 0 for a single leaf.
+  std::uint32_t height() const { return nodes_[kAnchor].height[0]; }
+  /// All keys in the tree are below this.
+  Key keyEnd() const { return static_cast<Key>(places_.size()); }
+
+  /// O(height). @pre !contains(key)
+  /// @throws IndexOutOfBounds if key >= kMaxKeys, InsufficientBufferSize if the tree is full
+  void insert(Key key, const GridBox& box);
+  /// O(height). @pre contains(key)
+  void remove(Key key);
+  /// Remove and insert. @pre contains(key)
+  void move(Key key, const GridBox& box);
+  void clear();
+
+  /// A balanced tree from the same leaves: for tests, and after many changes. O(n log n)
+  void rebuild();
+
+  /// Calls visit(key) for every leaf whose box overlaps the area (GridBox or GridSegment), in any order.
+  /// visit must not change the tree.
+  /// @throws InsufficientBufferSize if the tree is higher than it can be
+  template <class Area, class Visit>
+  void query(const Area& area, Visit&& visit) const {
+    Ref stack[kStackSize];
+    std::uint32_t depth = 1;
+    stack[0] = kAnchor;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      for (int side = 0; side < 2; ++side) {
+        if (!overlaps(area, node.box[side])) continue;
+        const Ref child = node.child[side];
+        if ((child & kLeaf) != 0) {
+          visit(child & ~kLeaf);
+        } else {
+          require<Fault::InsufficientBufferSize>(depth < kStackSize);
+          stack[depth++] = child;
+        }
+      }
+    }
+  }
+
+  // The structure itself, for tests.
+
+  /// The top node, a leaf, or kNone.
+  Ref root() const { return nodes_[kAnchor].child[0]; }
+  /// @pre a node; side 0 or 1
+  Ref child(Ref node, int side) const { return nodes_[node].child[side]; }
+  /// Hangs `value` where `child` was and refits all boxes above.
+  /// @throws LeafError if parent is a leaf, InvalidChild if child does not hang there
+  void replaceChild(Ref parent, Ref child, Ref value);
+  /// Whether boxes, heights, links and counts agree with each other.
+  bool valid() const;
+
+ private:
+  /// Which side of which node: node << 1 | side.
+  using Place = std::uint32_t;
+
+  struct Node {
+    GridBox box[2];
+    Ref child[2];
+    Place parent;
+    std::uint16_t height[2];
+  };
+
+  struct Leaf {
+    GridBox box;
+    Key key;
+  };
+
+  /// Node 0 holds the root as its side 0, so that the root needs no special case.
+  static constexpr Ref kAnchor = 0;
+  static constexpr std::uint32_t kStackSize = kMaxHeight + 4;
+
+  static Node emptyNode();
+
+  Ref newNode();
+  void freeNode(Ref node);
+  void hang(Place place, Ref ref, const GridBox& box, std::uint32_t height);
+  Place findSibling(const GridBox& box) const;
+  void rotate(Ref node, int side);
+  void refit(Ref node);
+  GridBox boxOf(Ref ref) const;
+  std::uint32_t heightOf(Ref ref) const;
+  void splitAll(std::vector<Leaf>& leaves);
+  bool validBelow(Ref node, std::uint32_t& leaves) const;
+
+  std::vector<Node> nodes_;
+  std::vector<Place> places_;  ///< Of each key's leaf; kNone if there is none.
+  Ref freeNodes_ = kNone;      ///< Linked by child[0].
+  std::uint32_t count_ = 0;
+  std::uint32_t maxLeaves_;
+};
+
+}  // namespace samestep

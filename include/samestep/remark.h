@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace samestep {
+
+/// What the engine points out without refusing the call: the warnings of the MIS.
+enum class Remark : std::uint8_t { HighIterWarning, NotBBTreeWarn };
+inline constexpr std::size_t kRemarkKinds = 2;
+
+/// Counts remarks and passes each on to a log hook, if there is one. The library itself never prints.
+/// Not part of the simulated state.
+struct Remarks {
+  /// Called on the stepping thread. The text lives for the call only.
+  using Hook = void (*)(Remark remark, const char* text, void* context);
+
+  std::array<std::uint64_t, kRemarkKinds> counts{};
+  Hook hook = nullptr;
+  void* context = nullptr;
+
+  std::uint64_t count(Remark remark) const { return counts[static_cast<std::size_t>(remark)]; }
+
+  void raise(Remark remark, const char* text) {
+    ++counts[static_cast<std::size_t>(remark)];
+    if (hook != nullptr) hook(remark, text, context);
+  }
+};
+
+}  // namespace samestep
