@@ -15,7 +15,7 @@ inline constexpr int kWarnGjkIterations = 20;
 inline constexpr int kWarnEpaIterations = 20;
 
 /// The most points a pair can touch in. MIS: MAX_CONTACTS_PER_ARBITER
-inline constexpr int kMaxContacts = 2;
+inline constexpr int kMaxContactsPerPair = 2;
 
 /// Remarks of the collision search: the MIS's HighIterWarning, counted instead of printed.
 struct CollisionStats {
@@ -37,13 +37,13 @@ struct CollisionPoint {
 template <Scalar S>
 struct CollisionInfo {
   Vector<S> normal;  ///< Unit, from the first shape to the second.
-  CollisionPoint<S> points[kMaxContacts];
-  int count = 0;
+  CollisionPoint<S> points[kMaxContactsPerPair];
+  std::int32_t count = 0;
   CollisionId id = 0;  ///< Where to start the next search for the same pair in the same order.
 
   /// @throws CollisionContactOverflow
   void push(const Vector<S>& pointA, const Vector<S>& pointB, std::uint32_t hash) {
-    require<Fault::CollisionContactOverflow>(count < kMaxContacts);
+    require<Fault::CollisionContactOverflow>(count < kMaxContactsPerPair);
     points[count++] = {pointA, pointB, hash};
   }
 };
@@ -66,17 +66,20 @@ template <Scalar S>
 CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start = 0,
                          CollisionStats* stats = nullptr);
 
+/// One point of a ContactPointSet.
+template <Scalar S>
+struct ContactPoint {
+  Vector<S> pointA;  ///< On the surface of the first shape, in the world.
+  Vector<S> pointB;
+  S distance{};  ///< Metres along the normal; negative where they overlap.
+};
+
 /// How two shapes touch, as the user sees it. MIS section 7, ContactPointSet.
 template <Scalar S>
 struct ContactPointSet {
-  struct Point {
-    Vector<S> pointA{};  ///< On the surface of the first shape, in the world.
-    Vector<S> pointB{};
-    S distance{};  ///< Metres along the normal; negative where they overlap.
-  };
-  int count = 0;
-  Vector<S> normal{};  ///< Unit, from the first shape to the second; zero without contact.
-  Point points[kMaxContacts]{};
+  std::int32_t count = 0;
+  Vector<S> normal;  ///< Unit, from the first shape to the second; zero without contact.
+  ContactPoint<S> points[kMaxContactsPerPair];
 };
 
 /// Whether and how two shapes under two rigid poses touch, outside of any Space. Filters do not count.
