@@ -123,7 +123,7 @@ class Body {
   /// MIS: bodySetPosition
   void setPosition(const Vector<S>& position);
   /// Moves the centre of mass within the body; the body's origin stays in place.
-  /// @throws IllegalBody
+  /// @throws IllegalBody farther than 2^8 m from the origin
   /// MIS: bodySetCenterOfMass
   void setCenterOfMass(const Vector<S>& center);
   /// @throws IllegalBody above the speed limit, or for a moving static body
@@ -167,13 +167,13 @@ class Body {
   /// @throws IllegalBody where the sum is out of range
   void applyForce(const Vector<S>& force, const Vector<S>& worldPoint);
 
-  /// Moves by its velocities for dt seconds, and forgets the bias velocities.
-  /// @throws IllegalBody where that leaves the world
+  /// Moves by its velocities for dt seconds, in [-1, 1], and forgets the bias velocities.
+  /// @throws IllegalBody for dt, or where that leaves the world
   /// MIS: bodyUpdatePosition
   void updatePosition(S dt);
-  /// Gravity, force and torque for dt seconds; clears force and torque. Does nothing to a body that is not
-  /// dynamic.
-  /// @throws IllegalBody for a body without mass, or beyond the speed limits
+  /// Gravity, force and torque for dt seconds, in [-1, 1]; clears force and torque. Does nothing to a body
+  /// that is not dynamic.
+  /// @throws IllegalBody for a body without mass, an argument out of range, or beyond the speed limits
   /// MIS: bodyUpdateVelocity
   void updateVelocity(const Vector<S>& gravity, S dt) { updateVelocity(gravity, S(1), dt); }
   /// The same with the velocities first multiplied by `damping`, in [0, 1].
