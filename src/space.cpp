@@ -5,6 +5,7 @@
 #include <atomic>
 #include <tuple>
 
+#include "require_ieee.h"
 #include "space_impl.h"
 #include "state_hash.h"
 

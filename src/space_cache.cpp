@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a Space computes from its state and may forget at any time: lists of shapes, placed geometry, trees.
+#include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Who is told of collisions: handlers, wildcards, separations.
+#include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {

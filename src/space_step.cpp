@@ -2,6 +2,7 @@
 // The step, stage by stage.
 #include <algorithm>
 
+#include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {
