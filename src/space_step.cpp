@@ -243,6 +243,15 @@ void Space<S>::expirePairs() {
   endStage(Stage::collide);
 }
 
+namespace {
+
+template <Scalar S>
+SolverBody<S> velocitiesOf(const Body<S>& body) {
+  return {body.velocity(), body.angularVelocity(), body.velocityBias(), body.angularVelocityBias()};
+}
+
+}  // namespace
+
 template <Scalar S>
 void Space<S>::preStep(S dt) {
   Impl& impl = *impl_;
@@ -257,6 +266,7 @@ void Space<S>::preStep(S dt) {
     if (index == Impl::kNone) {
       index = static_cast<std::uint32_t>(impl.solverBodies.size());
       impl.solverBodies.push_back(body);
+      impl.solver.bodies.push_back(velocitiesOf(state_.bodies.valueAt(body)));
     }
     return index;
   };
@@ -293,10 +303,8 @@ template <Scalar S>
 void Space<S>::solve(S dtCoefficient) {
   Impl& impl = *impl_;
   ContactSolver<S>& solver = impl.solver;
-  for (const std::uint32_t index : impl.solverBodies) {
-    const Body<S>& body = state_.bodies.valueAt(index);
-    solver.bodies.push_back(
-        {body.velocity_, body.angularVelocity_, body.velocityBias_, body.angularVelocityBias_});
+  for (std::size_t i = 0; i < impl.solverBodies.size(); ++i) {
+    solver.bodies[i] = velocitiesOf(state_.bodies.valueAt(impl.solverBodies[i]));
   }
   std::size_t next = 0;
   for (const Pair<S>& pair : state_.pairs) {
