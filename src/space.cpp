@@ -143,6 +143,11 @@ void Space<S>::remove(BodyId id) {
   require<Fault::MainStaticBody>(id != state_.staticBody);
   require<Fault::BodyHasShapes>(firstShape(id) == Impl::kNone);
 
+  eraseBody(id);
+}
+
+template <Scalar S>
+void Space<S>::eraseBody(BodyId id) {
   state_.bodies.erase(id);
   impl_->poses[id.index] = {};
 }
@@ -152,8 +157,10 @@ void Space<S>::removeWithShapes(BodyId id) {
   requireUnlocked();
   require<Fault::BodyNotFound>(contains(id));
   require<Fault::MainStaticBody>(id != state_.staticBody);
-  while (firstShape(id) != Impl::kNone) remove(state_.shapes.idAt(firstShape(id)));
-  remove(id);
+  LockGuard guard(*this);
+  while (firstShape(id) != Impl::kNone) eraseShape(state_.shapes.idAt(firstShape(id)));
+  eraseBody(id);
+  guard.finish();
 }
 
 template <Scalar S>
@@ -272,13 +279,21 @@ template <Scalar S>
 void Space<S>::remove(ShapeId id) {
   requireUnlocked();
   require<Fault::ShapeNotFound>(contains(id));
+
+  LockGuard guard(*this);
+  eraseShape(id);
+  guard.finish();
+}
+
+template <Scalar S>
+void Space<S>::eraseShape(ShapeId id) {
   ensureCache();
   const BodyId bodyId = state_.shapes.valueAt(id.index).body();
+  dropPairs(bodyId, id);
+
   Body<S>& holder = state_.bodies.valueAt(bodyId.index);
   const bool hadMass = state_.shapes.valueAt(id.index).mass() > S(0);
   if (holder.isDynamic() && hadMass) holder.setMassProperties(massOfShapes(bodyId, id, nullptr));
-
-  dropPairs(bodyId, id);
   impl_->dropBox(id.index);
   impl_->unlinkShape(bodyId.index, id.index);
   state_.shapes.erase(id);

@@ -505,6 +505,8 @@ class Space {
   bool applyCollision(Pair<S>& pair, const CollisionInfo<S>& info);
   void callSeparate(Pair<S>& pair, bool removal);
   void dropPairs(BodyId body, ShapeId shape);
+  void eraseBody(BodyId id);
+  void eraseShape(ShapeId id);
   bool mayCollide(std::uint32_t a, std::uint32_t b) const;
   bool askHandlers(Pair<S>& pair);
   const CollisionHandler<S>* boundHandler(HandlerBinding::Kind kind, CollisionType typeA,
