@@ -9,6 +9,8 @@ namespace samestep {
 
 template <Scalar S>
 void Space<S>::step(S dt) {
+  requireUnlocked();
+  if (dt == S(0)) return;
   checkStep(dt);
 
   const S before = state_.timeStep;
@@ -39,7 +41,6 @@ void Space<S>::endStage(Stage stage) {
 
 template <Scalar S>
 void Space<S>::checkStep(S dt) const {
-  requireUnlocked();
   require<Fault::ValueOutOfRange>(dt > S(0) && dt <= kMaxTimeStep<S>);
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;

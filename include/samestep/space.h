@@ -370,7 +370,7 @@ class Space {
 
   // Stepping.
 
-  /// One step of dt seconds, in (0, 1].
+  /// One step of dt seconds, in [0, 1]; 0 does nothing.
   /// @throws SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
   ///         MissingCallback for a number without function
   /// MIS: spaceStep
