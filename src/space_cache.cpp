@@ -153,7 +153,6 @@ std::span<const std::uint32_t> Space<S>::threadOf(BodyId id) {
     const auto eachEnd = [&](auto&& visit) {
       for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
         const Pair<S>& pair = state_.pairs[i];
-        if (!touching(pair)) continue;
         visit(state_.shapes.valueAt(pair.a.index).body().index, i);
         visit(state_.shapes.valueAt(pair.b.index).body().index, i);
       }

@@ -17,7 +17,6 @@ void Space<S>::step(S dt) {
   state_.timeStep = dt;
   ++state_.stamp;
   impl_->held.assign(state_.bodies.slots(), 0);
-  impl_->threadsKnown = false;
   {
     LockGuard guard(*this);
     integratePositions(dt);
@@ -141,6 +140,7 @@ void Space<S>::findPairs() {
   }
   while (old < pairs.size()) keepTouched(pairs[old]);
   if (copying) pairs.swap(impl.nextPairs);
+  impl.threadsKnown = false;
   endStage(Stage::findPairs);
 }
 
@@ -240,6 +240,7 @@ void Space<S>::expirePairs() {
       ++kept;
     }
     state_.pairs.resize(kept);
+    impl.threadsKnown = false;
   }
   endStage(Stage::collide);
 }

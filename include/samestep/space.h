@@ -318,6 +318,7 @@ class Space {
     const std::span<const std::uint32_t> thread = threadOf(id);
     LockGuard guard(*this);
     for (const std::uint32_t index : thread) {
+      if (!touching(state_.pairs[index])) continue;
       Arbiter<S> arbiter = arbiterOf(state_.pairs[index]);
       visit(arbiter);
     }
