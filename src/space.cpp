@@ -383,19 +383,32 @@ void Space<S>::unlock(bool runPostStep) {
   require<Fault::SpaceLockUnderflow>(locked_ > 0);
   --locked_;
   if (!runPostStep || locked_ > 0 || impl_->runningPostStep) return;
+  impl_->runPostStep(*this);
+}
+
+template <Scalar S>
+void Space<S>::Impl::runPostStep(Space& space) {
+  // After a callback that throws the later ones wait for the next time.
+  struct Running {
+    Impl& impl;
+    std::size_t done = 0;
+    explicit Running(Impl& of) : impl(of) { impl.runningPostStep = true; }
+    ~Running() {
+      impl.postStep.erase(impl.postStep.begin(), impl.postStep.begin() + static_cast<std::ptrdiff_t>(done));
+      impl.runningPostStep = false;
+    }
+  } running(*this);
   // A callback may add callbacks: they run in the same go.
-  impl_->runningPostStep = true;
-  for (std::size_t i = 0; i < impl_->postStep.size(); ++i) {
-    const typename Impl::PostStep callback = impl_->postStep[i];
-    impl_->postStep[i].function = nullptr;
-    callback.function(*this, callback.key, callback.data);
+  while (running.done < postStep.size()) {
+    const PostStep callback = postStep[running.done];
+    postStep[running.done++].function = nullptr;
+    callback.function(space, callback.key, callback.data);
   }
-  impl_->postStep.clear();
-  impl_->runningPostStep = false;
 }
 
 template <Scalar S>
 bool Space<S>::addPostStepCallback(PostStepFunc function, std::uint64_t key, void* data) {
+  require<Fault::ValueOutOfRange>(function != nullptr);
   for (const typename Impl::PostStep& waiting : impl_->postStep) {
     if (waiting.function != nullptr && waiting.key == key) return false;
   }

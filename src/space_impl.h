@@ -107,6 +107,7 @@ struct Space<S>::Impl {
     entries.push_back(entry);
   }
 
+  void runPostStep(Space& space);
   void growBodies(std::uint32_t slots);
   void growShapes(std::uint32_t slots);
   void touch(std::uint32_t body);

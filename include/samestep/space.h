@@ -366,7 +366,9 @@ class Space {
   void callWildcardSeparateB(Arbiter<S>& arbiter);
 
   /// Runs after the step or query that is under way, or at once if there is none; once per key until then:
-  /// false if the key is waiting already. Callbacks run in the order they were added.
+  /// false if the key is waiting already. Callbacks run in the order they were added. When one throws, the
+  /// later ones run after the next step or query.
+  /// @throws ValueOutOfRange for a null function
   bool addPostStepCallback(PostStepFunc function, std::uint64_t key, void* data = nullptr);
 
   // Stepping.
