@@ -183,10 +183,10 @@ void Space<S>::setType(BodyId id, BodyType type) {
                                  "The designated static body of a space stays static.");
   Body<S> changed = kept.detached();
   changed.setType(type);
+  for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
+    checkShape(state_.shapes.valueAt(i), changed);
+  }
   if (type == BodyType::dynamicBody) {
-    for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
-      checkShape(state_.shapes.valueAt(i), changed);
-    }
     const MassProperties<S> mass = massOfShapes(id, {}, nullptr);
     if (mass.mass > S(0)) changed.setMassProperties(mass);
   }
@@ -422,18 +422,21 @@ bool Space<S>::addPostStepCallback(PostStepFunc function, std::uint64_t key, voi
 
 template <Scalar S>
 void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>& handler) {
+  requireUnlocked();
   require<Fault::ValueOutOfRange>(number != 0);
   Impl::set(impl_->handlers, typename Impl::RegisteredHandler{number, handler});
 }
 
 template <Scalar S>
 void Space<S>::registerPositionFunc(CallbackNumber number, PositionFunc function, void* data) {
+  requireUnlocked();
   require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
   Impl::set(impl_->positionFuncs, {number, function, data});
 }
 
 template <Scalar S>
 void Space<S>::registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data) {
+  requireUnlocked();
   require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
   Impl::set(impl_->velocityFuncs, {number, function, data});
 }
@@ -497,6 +500,7 @@ void Space<S>::restore(const SavedSpace<S>& saved) {
 template <Scalar S>
 void Space<S>::adopt(const WorldState<S>& state) {
   requireUnlocked();
+  require<Fault::ForeignWorld>(state.bodies.contains(state.staticBody), "Nothing was saved there.");
   for (const HandlerBinding& binding : state.handlers) {
     require<Fault::MissingCallback>(Impl::find(impl_->handlers, binding.number) != nullptr);
   }

@@ -211,8 +211,8 @@ class Space {
   /// The body for things that never move, always there. MIS: spaceGetStaticBody
   BodyId staticBody() const { return state_.staticBody; }
   /// Replaces it by a copy of a free static body.
-  /// @throws AttachedStaticBody while the old one has shapes; AttachedBody; IllegalBody if it is not static;
-  ///         SpaceLocked
+  /// @throws SpaceLocked; AttachedStaticBody while the old one has shapes; IllegalBody if it is not static;
+  ///         DuplicateBody, AttachedBody
   /// MIS: spaceSetStaticBody
   BodyId setStaticBody(const Body<S>& body);
 
@@ -256,7 +256,8 @@ class Space {
     apply(copy);
     replace(id, copy);
   }
-  /// @throws BodyNotFound, SpaceLocked
+  /// @throws SpaceLocked, BodyNotFound; MainStaticBody for the designated static body; SizeOutOfRange or
+  ///         IllegalBody where its shapes are too large or too heavy for a body that moves
   /// MIS: bodySetType
   void setType(BodyId id, BodyType type);
   /// Sets mass, moment and centre of mass of a dynamic body to those of its shapes that have mass.
@@ -329,7 +330,7 @@ class Space {
   // number is state, saved and hashed.
 
   /// Registers functions under a number other than 0, or changes them.
-  /// @throws ValueOutOfRange for 0
+  /// @throws SpaceLocked; ValueOutOfRange for 0 or a null position or velocity function
   void registerHandler(CallbackNumber number, const CollisionHandler<S>& handler);
   void registerPositionFunc(CallbackNumber number, PositionFunc function, void* data = nullptr);
   void registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data = nullptr);
@@ -437,10 +438,11 @@ class Space {
   SavedSpace<S> save() const;
   /// Brings back a saved world, as often as wanted, also one of another Space. It continues exactly as the
   /// original did.
-  /// @throws SpaceLocked; MissingCallback if this Space lacks a number the world uses
+  /// @throws SpaceLocked; ForeignWorld where nothing was saved; MissingCallback if this Space lacks a number
+  ///         the world uses
   void restore(const SavedSpace<S>& saved);
   /// Brings in a whole state, as save does; the caller answers for it being one that a Space can have.
-  /// @throws SpaceLocked, MissingCallback
+  /// @throws SpaceLocked, ForeignWorld, MissingCallback
   void adopt(const WorldState<S>& state);
   /// Forgets everything that can be computed again. Changes no result.
   /// @throws SpaceLocked
