@@ -18,6 +18,10 @@ std::uint32_t nextSerial() {
   return ++last;
 }
 
+constexpr const char* kReindexLocked =
+    "You cannot manually reindex objects while the space is locked. Wait until the current query or step is "
+    "complete.";
+
 template <Scalar S>
 void requireIn(S value, S low, S high) {
   require<Fault::ValueOutOfRange>(value >= low && value <= high);
@@ -358,20 +362,20 @@ BB<S> Space<S>::boundingBox(ShapeId id) {
 
 template <Scalar S>
 void Space<S>::reindexStatic() {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   refreshTouched();
 }
 
 template <Scalar S>
 void Space<S>::reindexShape(ShapeId id) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   require<Fault::ShapeNotFound>(contains(id));
   refreshTouched();
 }
 
 template <Scalar S>
 void Space<S>::reindexShapesForBody(BodyId id) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   require<Fault::BodyNotFound>(contains(id));
   refreshTouched();
 }
