@@ -209,6 +209,15 @@ bool Space<S>::applyCollision(Pair<S>& pair, const CollisionInfo<S>& info) {
   return askHandlers(pair);
 }
 
+/// Whether both bodies are static: such a pair stays as it is.
+template <Scalar S>
+bool Space<S>::rests(const Pair<S>& pair) const {
+  const auto isStatic = [&](ShapeId id) {
+    return state_.bodies.valueAt(state_.shapes.valueAt(id.index).body().index).type() == BodyType::staticBody;
+  };
+  return isStatic(pair.a) && isStatic(pair.b);
+}
+
 /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
 /// MIS: spaceArbiterSetFilter
 template <Scalar S>
@@ -217,7 +226,7 @@ void Space<S>::expirePairs() {
   bool dropped = false;
   for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
     Pair<S>& pair = state_.pairs[i];
-    if (pair.state == ArbiterState::apart || pair.stamp == state_.stamp) continue;
+    if (pair.state == ArbiterState::apart || pair.stamp == state_.stamp || rests(pair)) continue;
     if (pair.state != ArbiterState::cached) {
       pair.state = ArbiterState::cached;
       callSeparate(pair, false);

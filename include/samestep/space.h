@@ -487,6 +487,7 @@ class Space {
   std::uint32_t nextShape(std::uint32_t index) const;
   std::span<const std::uint32_t> threadOf(BodyId id);
   bool touching(const Pair<S>& pair) const;
+  bool rests(const Pair<S>& pair) const;
   Arbiter<S> arbiterOf(Pair<S>& pair);
 
   // The stages of a step, in their order.
