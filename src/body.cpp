@@ -306,10 +306,10 @@ void Body<S>::updatePosition(S dt) {
   require<Fault::IllegalBody>(within(dt, kMaxTimeStep<S>), kBadTimeStep);
   const Vector<S> moved = mulAdd(velocity_ + velocityBias_, dt, center_);
   const S turned = mulAdd(angularVelocity_ + angularVelocityBias_, dt, angle_);
-  require<Fault::IllegalBody>(within(moved, kMaxWorldExtent<S>), kBadPosition);
-  require<Fault::IllegalBody>(within(turned, kMaxAngle<S>), kBadAngle);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(moved, kMaxWorldExtent<S>), kBadPosition);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(turned, kMaxAngle<S>), kBadAngle);
 
-  holdPosition(dt, kMaxWorldExtent<S>);
+  held_ |= holdPosition(dt, kMaxWorldExtent<S>);
 }
 
 template <Scalar S>
@@ -321,10 +321,11 @@ void Body<S>::updateVelocity(const Vector<S>& gravity, S damping, S dt) {
   require<Fault::IllegalBody>(within(gravity, kMaxAcceleration<S>) && damping >= S(0) && damping <= S(1),
                               kBadVelocity);
   const Motion motion = accelerated(gravity, damping, dt);
-  require<Fault::IllegalBody>(within(motion.velocity, kMaxSpeed<S>), kBadVelocity);
-  require<Fault::IllegalBody>(within(motion.angularVelocity, kMaxAngularSpeed<S>), kBadAngularVelocity);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(motion.velocity, kMaxSpeed<S>), kBadVelocity);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(motion.angularVelocity, kMaxAngularSpeed<S>),
+                              kBadAngularVelocity);
 
-  holdVelocity(motion);
+  held_ |= holdVelocity(motion);
   force_ = {};
   torque_ = S(0);
 }

@@ -138,6 +138,7 @@ void Space<S>::placeShapesOf(std::uint32_t bodyIndex) const {
 template <Scalar S>
 void Space<S>::refreshTouched() {
   ensureCache();
+  if (impl_->keepPlaced) return;
   for (const std::uint32_t body : impl_->touched) {
     if (state_.bodies.aliveAt(body)) placeShapesOf(body);
   }

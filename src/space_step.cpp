@@ -19,6 +19,9 @@ void Space<S>::step(S dt) {
   impl_->held.assign(state_.bodies.slots(), 0);
   {
     LockGuard guard(*this);
+    // What position functions ask about is the world before any of them moved a body.
+    if (!impl_->positionFuncs.empty()) refreshTouched();
+    typename Impl::KeepPlaced keep(*impl_);
     integratePositions(dt);
     updateShapes();
     findPairs();
@@ -29,6 +32,7 @@ void Space<S>::step(S dt) {
     solve(before == S(0) ? S(0) : dt / before);
     postSolve();
     listRangeEvents();
+    keep.end();
     guard.finish();
   }
 }
@@ -58,7 +62,10 @@ void Space<S>::integratePositions(S dt) {
     if (body.type() == BodyType::staticBody) continue;
     if (body.positionFunc() != 0) [[unlikely]] {
       const auto* entry = Impl::find(impl_->positionFuncs, body.positionFunc());
-      entry->function(body, dt, entry->data);
+      {
+        const typename Body<S>::WithinStep within(body, impl_->held[i]);
+        entry->function(body, dt, entry->data);
+      }
       // Whatever it did, the body is held within the world.
       impl_->held[i] |= body.holdPosition(S(0), worldExtent());
     } else {
@@ -298,9 +305,15 @@ void Space<S>::integrateVelocities(S dt) {
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
     Body<S>& body = state_.bodies.valueAt(i);
-    if (body.velocityFunc() != 0) [[unlikely]] {
+    if (body.type() == BodyType::staticBody) {
+      // Nothing moves it, and no function is asked to.
+    } else if (body.velocityFunc() != 0) [[unlikely]] {
       const auto* entry = Impl::find(impl_->velocityFuncs, body.velocityFunc());
-      entry->function(body, pull, kept, dt, entry->data);
+      {
+        const typename Body<S>::WithinStep within(body, impl_->held[i]);
+        entry->function(body, pull, kept, dt, entry->data);
+      }
+      impl_->touch(i);
     } else if (body.isDynamic()) {
       impl_->held[i] |= body.holdVelocity(body.accelerated(pull, kept, dt));
     }

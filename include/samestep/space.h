@@ -240,7 +240,7 @@ class Space {
   /// MIS: spaceContainsShape
   bool contains(ShapeId id) const { return state_.shapes.contains(id); }
 
-  /// A short-lived reference: the next add, remove or restore invalidates it.
+  /// A short-lived reference: the next add, remove, restore or step ends it.
   /// @throws BodyNotFound
   Body<S>& body(BodyId id);
   const Body<S>& body(BodyId id) const;
@@ -412,7 +412,8 @@ class Space {
   void filterArbiters(BodyId body, ShapeId shape = {});
 
   // Queries, answered by rising shape id. A shape is considered if its filter and the query's accept each
-  // other. They see the poses as they are now.
+  // other. They see the poses as they are now; within a step, as the step found (before it moved bodies) or
+  // made them, not what callbacks have moved since.
 
   /// The shapes within `distance` metres of a point; sensors included.
   void pointQuery(const Vector<S>& point, S distance, const ShapeFilter& filter, std::vector<PointHit<S>>& hits);
