@@ -238,16 +238,20 @@ TYPED_TEST(BodyTest, SettersTakeTheEndsOfTheirRangesAndNothingBeyond) {
   EXPECT_EQ(body.position(), Vector<S>(-kMaxWorldExtent<S>, kMaxWorldExtent<S>));
   EXPECT_EQ(body.angle(), kMaxAngle<S>);
 
-  this->template expectRefused<IllegalBody>(body, [&](auto& b) { b.setVelocity({kMaxSpeed<S> + more, S(0)}); });
-  this->template expectRefused<IllegalBody>(body,
-                                            [&](auto& b) { b.setAngularVelocity(kMaxAngularSpeed<S> + more); });
-  this->template expectRefused<IllegalBody>(body,
-                                            [&](auto& b) { b.setPosition({kMaxWorldExtent<S> + more, S(0)}); });
+  this->template expectRefused<IllegalBody>(body, [&](auto& b) {
+    b.setVelocity({kMaxSpeed<S> + more, S(0)});
+  });
+  this->template expectRefused<IllegalBody>(
+      body, [&](auto& b) { b.setAngularVelocity(kMaxAngularSpeed<S> + more); });
+  this->template expectRefused<IllegalBody>(body, [&](auto& b) {
+    b.setPosition({kMaxWorldExtent<S> + more, S(0)});
+  });
   this->template expectRefused<IllegalBody>(body, [&](auto& b) { b.setForce({S(0), kMaxForce<S> + more}); });
   this->template expectRefused<IllegalBody>(body, [&](auto& b) { b.setTorque(-kMaxForce<S> - more); });
   this->template expectRefused<IllegalBody>(body, [&](auto& b) { b.setAngle(kMaxAngle<S> + more); });
-  this->template expectRefused<IllegalBody>(
-      body, [&](auto& b) { b.setCenterOfMass({kMaxCenterOfMass<S> + more, S(0)}); });
+  this->template expectRefused<IllegalBody>(body, [&](auto& b) {
+    b.setCenterOfMass({kMaxCenterOfMass<S> + more, S(0)});
+  });
 }
 
 TYPED_TEST(BodyTest, MessagesSayWhatIsInvalid) {
@@ -430,8 +434,9 @@ TYPED_TEST(BodyTest, ForcesBeyondTheRangeAreRefused) {
   Body<S> body(S(1), S(1));
   body.setForce({kMaxForce<S>, S(0)});
   this->template expectRefused<IllegalBody>(body, [](auto& b) { b.applyForce({S(1), S(0)}, {}); });
-  this->template expectRefused<IllegalBody>(
-      body, [](auto& b) { b.applyForce({S(0), kMaxForce<S>}, {kMaxWorldExtent<S>, S(0)}); });
+  this->template expectRefused<IllegalBody>(body, [](auto& b) {
+    b.applyForce({S(0), kMaxForce<S>}, {kMaxWorldExtent<S>, S(0)});
+  });
 }
 
 TYPED_TEST(BodyTest, VelocityAtAPointIncludesTheSpin) {

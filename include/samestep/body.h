@@ -27,8 +27,8 @@ using CallbackNumber = std::uint32_t;
 template <Scalar S>
 struct MassProperties {
   S mass{};
-  Scaled<S> moment{};       ///< kg m^2 about the centre of mass.
-  Vector<S> centerOfMass{}; ///< In body coordinates, m.
+  Scaled<S> moment{};        ///< kg m^2 about the centre of mass.
+  Vector<S> centerOfMass{};  ///< In body coordinates, m.
 };
 
 /// A rigid body: mass, pose and motion about its centre of mass. MIS section 4.
@@ -168,8 +168,8 @@ class Body {
   void applyForce(const Vector<S>& force, const Vector<S>& worldPoint);
 
   /// Moves by its velocities for dt seconds, in [-1, 1], and forgets the bias velocities.
-  /// @throws IllegalBody for dt, or where that leaves the world; in a step's position function it is held there
-  /// MIS: bodyUpdatePosition
+  /// @throws IllegalBody for dt, or where that leaves the world; in a step's position function it is held
+  /// there MIS: bodyUpdatePosition
   void updatePosition(S dt);
   /// Gravity, force and torque for dt seconds, in [-1, 1]; clears force and torque. Does nothing to a body
   /// that is not dynamic.
