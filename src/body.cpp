@@ -45,11 +45,6 @@ S acceleration(S force, const Scaled<S>& inverse) {
   return toScalarWithin(toScaled(force) * inverse, S(1 << 30));
 }
 
-template <Scalar S>
-Vector<S> held(const Vector<S>& v, S limit) {
-  return {clamp(v.x, -limit, limit), clamp(v.y, -limit, limit)};
-}
-
 }  // namespace
 
 template <Scalar S>
@@ -266,7 +261,7 @@ typename Body<S>::Motion Body<S>::accelerated(const Vector<S>& gravity, S dampin
 
 template <Scalar S>
 std::uint8_t Body<S>::holdVelocity(const Motion& motion) {
-  velocity_ = held(motion.velocity, kMaxSpeed<S>);
+  velocity_ = heldWithin(motion.velocity, kMaxSpeed<S>);
   angularVelocity_ = clamp(motion.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
   return static_cast<std::uint8_t>((velocity_ == motion.velocity ? kHeldNothing : kHeldSpeed) |
                                    (angularVelocity_ == motion.angularVelocity ? kHeldNothing : kHeldSpin));
@@ -282,7 +277,7 @@ std::uint8_t Body<S>::holdPosition(S dt, S extent) {
   angularVelocityBias_ = S(0);
 
   std::uint8_t what = kHeldNothing;
-  center_ = held(moved, extent);
+  center_ = heldWithin(moved, extent);
   if (!(center_ == moved)) {
     what |= kHeldAtBorder;
     if (center_.x != moved.x) velocity_.x = S(0);

@@ -15,21 +15,38 @@ inline constexpr S kMaxSum = S(1 << 20);
 template <Scalar S>
 inline constexpr S kMaxFrictionRatio = S(1 << 10);
 
+/// The largest relative inverse moment, 1/m^2: a disc of 2^-5 m has 2^11.
+template <Scalar S>
+inline constexpr S kMaxRelativeMoment = S(1 << 18);
+
 /// The inverse moment, held where the response to an impulse at `arm` stays in range. Only a moment far
 /// too small for the mass and size of a body is ever held.
 template <Scalar S>
 S heldMoment(S moment, const Vector<S>& arm) {
-  if (moment <= S(256)) [[likely]] return moment;
   const S reach = max(abs(arm.x), abs(arm.y));
-  const S least = ratio<S>(1, 1024);
-  const S held = max(reach, least);
-  return min(moment, S(1 << 24) / held / held);
+  if (moment <= S(64) && reach <= S(512)) [[likely]]
+    return moment;
+  return reach <= S(8) ? moment : min(moment, S(1 << 24) / reach / reach);
 }
 
 template <Scalar S>
 S relativeMoment(const Body<S>& body, const Scaled<S>& lighterMass) {
   if (body.inverseMoment() == Scaled<S>{}) return S(0);
-  return toScalar<S>(body.inverseMoment() * lighterMass);
+  return toScalarWithin(body.inverseMoment() * lighterMass, kMaxRelativeMoment<S>);
+}
+
+/// Coulomb's limit in units of u, held at its largest without leaving the range on the way.
+template <Scalar S>
+S frictionRatio(S friction, S tangentK, S normalK) {
+  const bool steep = tangentK * ratio<S>(1, 1024) > normalK;
+  return min(mulDiv(steep ? min(friction, S(1)) : friction, tangentK, normalK), kMaxFrictionRatio<S>);
+}
+
+/// An impulse kept as a speed of the lighter body, in units of u.
+template <Scalar S>
+S sumOf(S speed, S k, S inverseK) {
+  const S limit = kMaxSum<S> * inverseK;
+  return speed >= limit ? kMaxSum<S> : speed <= -limit ? -kMaxSum<S> : speed * k;
 }
 
 }  // namespace
@@ -40,6 +57,7 @@ PairResponse<S> respond(const Body<S>& a, const Body<S>& b) {
   const Body<S>& light = aIsLighter ? a : b;
   const Body<S>& heavy = aIsLighter ? b : a;
   const Scaled<S> lightMass = toScaled(light.mass());
+  if (light.inverseMass() == Scaled<S>{}) return {};
   const bool equal = light.inverseMass() == heavy.inverseMass();
   const S heavyInverse = equal ? S(1) : toScalar<S>(heavy.inverseMass() * lightMass);
   return {aIsLighter ? S(1) : heavyInverse, aIsLighter ? heavyInverse : S(1), relativeMoment(a, lightMass),
@@ -47,9 +65,14 @@ PairResponse<S> respond(const Body<S>& a, const Body<S>& b) {
 }
 
 template <Scalar S>
+PairResponse<S> PairResponse<S>::at(const Vector<S>& armA, const Vector<S>& armB) const {
+  return {massA, massB, heldMoment(momentA, armA), heldMoment(momentB, armB)};
+}
+
+template <Scalar S>
 S effectiveInverseMass(const PairResponse<S>& response, S armA, S armB) {
-  const S k = dot(response.momentA * armA, armA, response.momentB * armB, armB) +
-              (response.massA + response.massB);
+  const S k =
+      dot(response.momentA * armA, armA, response.momentB * armB, armB) + (response.massA + response.massB);
   require<Fault::UnsolvableCollision>(k > S(0));
   return k;
 }
@@ -67,9 +90,7 @@ void ContactSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
     const Contact<S>& contact = pair.contacts[i];
     const Vector<S> armA = contact.pointA - a.worldCenter();
     const Vector<S> armB = contact.pointB - b.worldCenter();
-    PairResponse<S> response = whole;
-    response.momentA = heldMoment(whole.momentA, armA);
-    response.momentB = heldMoment(whole.momentB, armB);
+    const PairResponse<S> response = whole.at(armA, armB);
 
     ContactRow<S>& row = rows.emplace_back();
     row.bodyA = indexA;
@@ -93,17 +114,17 @@ void ContactSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
     row.tangentSpinB = mulDiv(response.momentB, row.tangentArmB, tangentK);
     row.normalScale = normalMass;
     row.tangentScale = tangentMass;
-    row.friction = min(mulDiv(pair.friction, tangentK, normalK), kMaxFrictionRatio<S>);
+    row.friction = frictionRatio(pair.friction, tangentK, normalK);
     row.surface = surface;
 
     const S gap = dot(contact.pointB - contact.pointA, n);
     row.bias = -(min(gap + slop, S(0)) * biasRate);
     const Vector<S> dv = vb.velocity - va.velocity;
-    const S approach = dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, vb.angularVelocity, -row.normalArmA,
-                            va.angularVelocity);
+    const S approach =
+        dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, vb.angularVelocity, -row.normalArmA, va.angularVelocity);
     row.bounce = approach * pair.elasticity;
-    row.normalSum = clamp(mulDiv(contact.normalSpeed, normalK, S(1)), S(0), kMaxSum<S>);
-    row.tangentSum = clamp(mulDiv(contact.tangentSpeed, tangentK, S(1)), -kMaxSum<S>, kMaxSum<S>);
+    row.normalSum = max(sumOf(contact.normalSpeed, normalK, normalMass), S(0));
+    row.tangentSum = sumOf(contact.tangentSpeed, tangentK, tangentMass);
   }
 }
 
@@ -153,9 +174,9 @@ void ContactSolver<S>::iterate() {
     const Vector<S> dv = b.velocity - a.velocity;
     const S normalSpeed =
         dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, b.angularVelocity, -row.normalArmA, a.angularVelocity);
-    const S tangentSpeed = dot4(-n.y, dv.x, n.x, dv.y, row.tangentArmB, b.angularVelocity, -row.tangentArmA,
-                                a.angularVelocity) +
-                           row.surface;
+    const S tangentSpeed =
+        dot4(-n.y, dv.x, n.x, dv.y, row.tangentArmB, b.angularVelocity, -row.tangentArmA, a.angularVelocity) +
+        row.surface;
     const S normalBefore = row.normalSum;
     row.normalSum = clamp(normalBefore - (row.bounce + normalSpeed), S(0), kMaxSum<S>);
     const S limit = row.friction * row.normalSum;
@@ -176,13 +197,16 @@ void ContactSolver<S>::iterate() {
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
+template struct PairResponse<double>;
 template PairResponse<double> respond(const Body<double>&, const Body<double>&);
 template double effectiveInverseMass(const PairResponse<double>&, double, double);
 template struct ContactSolver<double>;
 #endif
+template struct PairResponse<Fixed>;
 template PairResponse<Fixed> respond(const Body<Fixed>&, const Body<Fixed>&);
 template Fixed effectiveInverseMass(const PairResponse<Fixed>&, Fixed, Fixed);
 template struct ContactSolver<Fixed>;
+template struct PairResponse<CheckedFixed>;
 template PairResponse<CheckedFixed> respond(const Body<CheckedFixed>&, const Body<CheckedFixed>&);
 template CheckedFixed effectiveInverseMass(const PairResponse<CheckedFixed>&, CheckedFixed, CheckedFixed);
 template struct ContactSolver<CheckedFixed>;

@@ -46,13 +46,18 @@ template <Scalar S>
 struct PairResponse {
   S massA{}, massB{};      ///< Inverse masses, in [0, 1].
   S momentA{}, momentB{};  ///< Inverse moments, 1/m^2.
+
+  /// To an impulse at the given places: moments far too small for them are held.
+  PairResponse at(const Vector<S>& armA, const Vector<S>& armB) const;
 };
 
-/// How the response along one axis is made up: k >= 1 for a pair that can be solved.
+/// All 0 if nothing moves either body.
 template <Scalar S>
 PairResponse<S> respond(const Body<S>& a, const Body<S>& b);
 
-/// Inverse effective mass along an axis with the given arms (r x axis), relative to the lighter body.
+/// Inverse effective mass along an axis with the given arms (r x axis), relative to the lighter body; at
+/// least 1.
+/// @throws UnsolvableCollision if nothing moves either body
 /// MIS: k_scalar (its core)
 template <Scalar S>
 S effectiveInverseMass(const PairResponse<S>& response, S armA, S armB);
