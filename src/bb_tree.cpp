@@ -220,6 +220,7 @@ template <Scalar S>
 void BBTree<S>::sortFound() {
   constexpr std::size_t kFew = 48;
   if (found_.size() <= kFew) {
+    // total order: integers
     std::sort(found_.begin(), found_.end());
     return;
   }
@@ -267,6 +268,7 @@ template <Scalar S>
 void BBTree<S>::collectIn(const BB<S>& box, std::vector<IndexKey>& keys) const {
   keys.clear();
   tree_.query(gridBox(box), [&keys](IndexKey key) { keys.push_back(key); });
+  // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }
 
@@ -281,6 +283,7 @@ void BBTree<S>::collectAlong(const Vector<S>& a, const Vector<S>& b, S radius,
                                gridCeil(radius),
                                onGrid(a) && onGrid(b) && radius <= kGridEdge<S>};
   tree_.query(segment, [&keys](IndexKey key) { keys.push_back(key); });
+  // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }
 
@@ -358,6 +361,7 @@ std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
     };
     this->collideStatic(*this->staticIndex(), add, &all);
   }
+  // total order: pairs of integers
   std::sort(all.begin(), all.end());
   return all;
 }

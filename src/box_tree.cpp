@@ -297,6 +297,7 @@ void BoxTree::splitAll(std::vector<Leaf>& leaves) {
     };
     const std::size_t middle = range.begin + (range.end - range.begin) / 2;
     const auto at = [&leaves](std::size_t i) { return leaves.begin() + static_cast<std::ptrdiff_t>(i); };
+    // total order: keys are unique, so each half is one set; the order within it is asked for nowhere
     std::nth_element(at(range.begin), at(middle), at(range.end), before);
 
     const Ref node = newNode();
