@@ -198,13 +198,12 @@ void BBTree<S>::findChanged(const BBTree* resting) {
   found_.clear();
   for (const IndexKey key : changed_) {
     if (!tree_.contains(key)) continue;
-    const GridBox box = tree_.box(key);
-    tree_.query(box, [&](IndexKey other) {
-      const bool othersTurn = other <= key && (changes_[other] & kMovedHere) != 0;
+    tree_.queryAround(key, [&](IndexKey other) {
+      const bool othersTurn = other < key && (changes_[other] & kMovedHere) != 0;
       if (!othersTurn) found_.push_back(packed(key, other));
     });
     if (resting == nullptr) continue;
-    resting->tree_.query(box, [&](IndexKey other) { found_.push_back(packed(key, other)); });
+    resting->tree_.query(tree_.box(key), [&](IndexKey other) { found_.push_back(packed(key, other)); });
   }
   if (resting == nullptr) return;
   for (const IndexKey key : resting->changed_) {
@@ -351,7 +350,7 @@ std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
   std::vector<KeyPair> all;
   for (IndexKey key = 0; key < tree_.keyEnd(); ++key) {
     if (!tree_.contains(key)) continue;
-    tree_.query(tree_.box(key), [&all, key](IndexKey other) {
+    tree_.queryAround(key, [&all, key](IndexKey other) {
       if (key < other) all.push_back({key, other});
     });
   }
