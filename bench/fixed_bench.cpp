@@ -31,7 +31,9 @@ struct Portable {
 
 constexpr std::int64_t kLeast = Fixed::lowest().raw(), kMost = Fixed::max().raw();
 
-double lift(double x, std::uint64_t bits) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) ^ bits); }
+double lift(double x, std::uint64_t bits) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) ^ bits);
+}
 Fixed lift(Fixed x, std::uint64_t bits) { return Fixed::fromRaw(x.raw() ^ static_cast<std::int64_t>(bits)); }
 Portable lift(Portable x, std::uint64_t bits) { return Portable(x.bits ^ static_cast<std::int64_t>(bits)); }
 std::uint64_t bitsOf(double x) { return std::bit_cast<std::uint64_t>(x); }
@@ -236,19 +238,25 @@ struct Exp {
   static constexpr Domain kDomain = Domain::exponent;
   Fixed operator()(Fixed a, Fixed, Fixed, Fixed) const { return exp(a); }
   double operator()(double a, double, double, double) const { return std::exp(a); }
-  Portable operator()(Portable a, Portable, Portable, Portable) const { return Portable(raw::exp<Way>(a.bits).raw); }
+  Portable operator()(Portable a, Portable, Portable, Portable) const {
+    return Portable(raw::exp<Way>(a.bits).raw);
+  }
 };
 struct Exp2 {
   static constexpr Domain kDomain = Domain::exponent;
   Fixed operator()(Fixed a, Fixed, Fixed, Fixed) const { return exp2(a); }
   double operator()(double a, double, double, double) const { return std::exp2(a); }
-  Portable operator()(Portable a, Portable, Portable, Portable) const { return Portable(raw::exp2<Way>(a.bits).raw); }
+  Portable operator()(Portable a, Portable, Portable, Portable) const {
+    return Portable(raw::exp2<Way>(a.bits).raw);
+  }
 };
 struct Log2 {
   static constexpr Domain kDomain = Domain::positive;
   Fixed operator()(Fixed a, Fixed, Fixed, Fixed) const { return log2(a); }
   double operator()(double a, double, double, double) const { return std::log2(a); }
-  Portable operator()(Portable a, Portable, Portable, Portable) const { return Portable(raw::log2<Way>(a.bits)); }
+  Portable operator()(Portable a, Portable, Portable, Portable) const {
+    return Portable(raw::log2<Way>(a.bits));
+  }
 };
 struct Pow {
   static constexpr Domain kDomain = Domain::exponent;
@@ -259,7 +267,6 @@ struct Pow {
     return Portable(raw::pow<Way>(a.bits < 0 ? -a.bits : a.bits, b.bits).raw);
   }
 };
-
 
 std::vector<std::string>& order() {
   static std::vector<std::string> names;
@@ -291,15 +298,17 @@ class TableReporter : public benchmark::BenchmarkReporter {
     }
   }
   void Finalize() override {
-    std::printf("| operation | double ns | Fixed ns | ratio | portable ns | to Fixed | double latency ns | Fixed latency ns | ratio |\n");
+    std::printf(
+        "| operation | double ns | Fixed ns | ratio | portable ns | to Fixed | double latency ns | Fixed "
+        "latency ns | ratio |\n");
     std::printf("|---|---|---|---|---|---|---|---|---|\n");
     for (const std::string& name : order()) {
       if (times_.count(name + "/fixed/throughput") == 0) continue;
       const double d = median(name + "/double/throughput"), f = median(name + "/fixed/throughput");
       const double p = median(name + "/portable/throughput");
       const double dl = median(name + "/double/latency"), fl = median(name + "/fixed/latency");
-      std::printf("| %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", name.c_str(), d, f, f / d, p,
-                  p / f, dl, fl, fl / dl);
+      std::printf("| %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", name.c_str(), d, f,
+                  f / d, p, p / f, dl, fl, fl / dl);
     }
   }
 
