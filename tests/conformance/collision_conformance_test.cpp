@@ -87,6 +87,7 @@ class CollisionConformanceTest : public ::testing::TestWithParam<PairOfTypes> {
 };
 
 TEST_P(CollisionConformanceTest, DoubleFindsTheContactsOfChipmunk) { compare<double>(2, 1, 1e-9); }
+TEST_P(CollisionConformanceTest, FixedFindsTheContactsOfChipmunk) { compare<Fixed>(2, 1, 1e-6); }
 
 std::string nameOf(const ::testing::TestParamInfo<PairOfTypes>& instance) {
   const char* names[] = {"Circle", "Segment", "Poly"};
