@@ -3,9 +3,10 @@
 
 #include "clip.h"
 #include "collision_functions.h"
-#include "faces.h"
 #include "gjk.h"
+#include "shape_edges.h"
 #include "support.h"
+#include "support_faces.h"
 
 namespace samestep {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/shape.h>
 
-#include "support.h"
+#include "shape_edges.h"
 
 namespace samestep {
 namespace {
