@@ -73,8 +73,8 @@ void touch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints
   if (closest.distance > a.radius + b.radius) return;
   if (!endMayTouch(a, closest.vertexA, closest.normal)) return;
   if (!endMayTouch(b, closest.vertexB, -closest.normal)) return;
-  const Vector<S> reference = a.planes[0].v0;
-  clip(SupportPair<S>{{a, reference}, {b, reference}}, a.radius, b.radius, closest.normal, info);
+  const Vector<S> n = closest.normal, reference = a.planes[0].v0;
+  clip(supportEdge<S>({a, reference}, n), a.radius, supportEdge<S>({b, reference}, -n), b.radius, n, info);
 }
 
 template <Scalar S>
