@@ -17,7 +17,7 @@ void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionI
   const S reach = a.radius + b.radius;
   if (exactDot(delta, delta) >= exactProduct(reach, reach)) return;
   info.normal = delta == Vector<S>() ? Vector<S>(S(1), S(0)) : normalize(delta);
-  info.push(mulAdd(info.normal, a.radius, a.center.v0), mulAdd(info.normal, -b.radius, b.center.v0), 0);
+  info.push(a.center.v0 + info.normal * a.radius, b.center.v0 - info.normal * b.radius, 0);
 }
 
 /// The tangents of a segment towards its neighbours, in the world; zero without one.
@@ -48,7 +48,7 @@ void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, c
   const Vector<S> n = delta == Vector<S>() ? fallback : normalize(delta);
   if (!endMayTouch(other, nearest.vertex, -n)) return;
   info.normal = n;
-  info.push(mulAdd(n, circle.radius, circle.center.v0), mulAdd(n, -other.radius, corner), 0);
+  info.push(circle.center.v0 + n * circle.radius, corner - n * other.radius, 0);
 }
 
 /// A circle and a segment or polygon. One look at the edges finds what GJK and EPA would.
@@ -62,7 +62,7 @@ void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, Co
   if (nearest.distance == reach && other.type == ShapeType::segment) return;
   const Vector<S> n = -other.planes[nearest.edge].n;
   info.normal = n;
-  info.push(mulAdd(n, circle.radius, c), mulAdd(n, nearest.distance - other.radius, c), 0);
+  info.push(c + n * circle.radius, c + n * (nearest.distance - other.radius), 0);
 }
 
 /// What two shapes with edges touch in, if they are near enough and the ends of segments allow it.
@@ -73,18 +73,17 @@ void touch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints
   if (closest.distance > a.radius + b.radius) return;
   if (!endMayTouch(a, closest.vertexA, closest.normal)) return;
   if (!endMayTouch(b, closest.vertexB, -closest.normal)) return;
-  const Vector<S> n = closest.normal, reference = a.planes[0].v0;
-  clip(supportEdge<S>({a, reference}, n), a.radius, supportEdge<S>({b, reference}, -n), b.radius, n, info);
+  const Vector<S> n = closest.normal;
+  clip(supportEdge(SupportShape<S>(a), n), a.radius, supportEdge(SupportShape<S>(b), -n), b.radius, n, info);
 }
 
 template <Scalar S>
 ClosestPoints<S> closestPoints(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
                                CollisionStats* stats) {
-  const Vector<S> reference = a.planes[0].v0;
   // Across the line between the middles of the boxes, twice as long.
   const Vector<S> axis = perp(Vector<S>((a.box.left - b.box.left) + (a.box.right - b.box.right),
                                         (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
-  return gjk(SupportPair<S>{{a, reference}, {b, reference}}, start, axis, stats);
+  return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);
 }
 
 /// Up to here, looking at every vertex for every face is faster than searching.

@@ -7,27 +7,22 @@
 
 namespace samestep {
 
-/// The vertices of a placed shape, seen from one reference point that both shapes of a pair share. In Fixed
-/// these differences are exact, so nothing that follows depends on where in the world the pair is.
+/// The vertices of a placed shape. Only differences of places are multiplied: in Fixed they are exact, so
+/// that nothing depends on where in the world a pair is.
 template <Scalar S>
 struct SupportShape {
   const Plane<S>* planes;
   int count;
-  Vector<S> reference;
 
-  SupportShape(const PlacedShape<S>& shape, const Vector<S>& origin)
-      : planes(shape.type == ShapeType::circle ? &shape.center : shape.planes),
-        count(shape.count),
-        reference(origin) {}
-
-  Vector<S> point(int i) const { return planes[i].v0 - reference; }
+  explicit SupportShape(const PlacedShape<S>& shape)
+      : planes(shape.type == ShapeType::circle ? &shape.center : shape.planes), count(shape.count) {}
 
   /// The vertex farthest along n; of equals the first. MIS: polySupportPointIndex
   int farthest(const Vector<S>& n) const {
     int best = 0;
-    Wide<S> most = exactDot(point(0), n);
+    Wide<S> most{};
     for (int i = 1; i < count; ++i) {
-      const Wide<S> along = exactDot(point(i), n);
+      const Wide<S> along = exactDot(planes[i].v0 - planes[0].v0, n);
       if (along > most) {
         most = along;
         best = i;
@@ -54,7 +49,7 @@ struct SupportPair {
   SupportShape<S> a;
   SupportShape<S> b;
 
-  MinkowskiPoint<S> vertex(int ia, int ib) const { return {b.point(ib) - a.point(ia), ia, ib}; }
+  MinkowskiPoint<S> vertex(int ia, int ib) const { return {b.planes[ib].v0 - a.planes[ia].v0, ia, ib}; }
   /// The point of the difference farthest along n. MIS: support
   MinkowskiPoint<S> farthest(const Vector<S>& n) const { return vertex(a.farthest(-n), b.farthest(n)); }
 };

@@ -134,7 +134,7 @@ TYPED_TEST(CollisionTest, CircleTouchesTheRoundEndOfASegment) {
                                  segmentShape<S>(BodyId(), at(-8, 0), at(8, 0), S(2)), Transform<S>());
   ASSERT_EQ(set.count, 1);
   EXPECT_EQ(set.normal, Vector<S>(ratio<S>(-3, 5), ratio<S>(-4, 5)));
-  EXPECT_EQ(set.points[0].distance, S(-1));
+  EXPECT_LE(abs(set.points[0].distance + S(1)), S(0x1p-29));
 }
 
 TYPED_TEST(CollisionTest, CircleDoesNotTouchAnEndOnTheSideOfItsNeighbour) {
@@ -354,7 +354,10 @@ TYPED_TEST(CollisionTest, EqualShapesInOnePlaceGetAnAnswer) {
   for (int i = 0; i < 300; ++i) {
     const Placement<S> a(TestFixture::randomShape(random, 2, i % 2 == 0), TestFixture::randomPose(random, 3));
     const CollisionInfo<S> info = collide(*a, *a);
-    EXPECT_GE(info.count, 1) << i;
+    // A line without thickness does not overlap itself.
+    if (a->type != ShapeType::segment || a->radius > S(0)) {
+      EXPECT_GE(info.count, 1) << i;
+    }
     TestFixture::expectSane(info);
     TestFixture::expectSane(collide(*a, *a, info.id));
   }
