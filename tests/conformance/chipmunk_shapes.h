@@ -4,6 +4,7 @@
 #include <chipmunk/chipmunk.h>
 #include <chipmunk/chipmunk_structs.h>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -55,6 +56,10 @@ Shape<S> build(const ShapeRecipe& recipe) {
       return polyShapeRaw<S>(BodyId(), points, radius);
   }
   return {};
+}
+
+inline double far(const Vector<double>& a, const Vector<double>& b) {
+  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
 }
 
 inline cpVect toChipmunk(const Vector<double>& v) { return cpv(v.x, v.y); }

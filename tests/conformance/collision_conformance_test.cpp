@@ -42,8 +42,6 @@ Expected chipmunkContacts(const ShapeRecipe& a, const Transform<double>& poseA, 
   return expected;
 }
 
-double far(const Vector<double>& a, const Vector<double>& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
 class CollisionConformanceTest : public ::testing::TestWithParam<PairOfTypes> {
  protected:
   template <Scalar S>
