@@ -127,7 +127,7 @@ constexpr Quotient divide(std::int64_t a, std::int64_t b, std::int64_t least, st
     constexpr double kScale = static_cast<double>(std::uint64_t{1} << kShift);
     const std::uint64_t d = magnitude(b);
     if (d - 1 < way::DivideByDouble::kMaxDivisor - 1 && !std::is_constant_evaluated()) {
-      const double signedEstimate = static_cast<double>(a) * kScale / static_cast<double>(b);
+      const double signedEstimate = way::nearDouble(a) * kScale / way::nearDouble(b);
       const double estimate = signedEstimate < 0 ? -signedEstimate : signedEstimate;
       if (estimate < way::DivideByDouble::kMaxQuotient) [[likely]] {
         const std::uint64_t size = way::DivideByDouble::rounded(estimate, n, d, kShift);

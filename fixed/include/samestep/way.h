@@ -7,6 +7,10 @@
 
 #include "samestep/halves.h"
 
+#if defined(__SSE2__) && defined(__x86_64__)
+#include <emmintrin.h>
+#endif
+
 /// The ways a machine may compute what the exact result defines. All of them give the same bits; every way
 /// this compiler can build is compiled and compared by the tests. This is the only file that asks which
 /// compiler or processor it meets.
@@ -20,6 +24,10 @@ struct PortableWords {
   static constexpr std::uint64_t high(U128 a) { return a.high; }
   static constexpr std::uint64_t low(U128 a) { return a.low; }
   static constexpr U128 multiply(std::uint64_t a, std::uint64_t b) { return multiplyHalves(a, b); }
+  /// a b / 2^33 for b at most 2^32: half the work of a full product.
+  static constexpr std::uint64_t multiplyShort(std::uint64_t a, std::uint64_t b) {
+    return ((a >> 32) * b + ((a & 0xffffffff) * b >> 32)) >> 1;
+  }
   static constexpr U128 multiplySigned(std::int64_t a, std::int64_t b) {
     Halves product = multiplyHalves(static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(b));
     product.high -= (static_cast<std::uint64_t>(a >> 63) & static_cast<std::uint64_t>(b)) +
@@ -72,23 +80,21 @@ class Sum {
  public:
   constexpr void plus(std::int64_t a, std::int64_t b) { sum_ = sum_ + Words::multiplySigned(a, b); }
   constexpr void minus(std::int64_t a, std::int64_t b) { sum_ = sum_ - Words::multiplySigned(a, b); }
-  constexpr void plus(std::int64_t c) {
-    sum_ = sum_ + (Words::make(static_cast<std::uint64_t>(c >> 63), static_cast<std::uint64_t>(c)) << kBits);
-  }
+  constexpr void plus(std::int64_t c) { whole_ += static_cast<std::uint64_t>(c); }
   /// To nearest, ties to even.
   constexpr std::int64_t rounded() const {
     if constexpr (kBits == 0) {
-      return static_cast<std::int64_t>(Words::low(sum_));
+      return static_cast<std::int64_t>(Words::low(sum_) + whole_);
     } else {
       // An odd floor makes a tie look like more than half.
-      const std::uint64_t floor = Words::low(sum_ >> kBits);
+      const std::uint64_t bits = Words::low(sum_);
+      const std::uint64_t floor = (Words::high(sum_) << (64 - kBits) | bits >> kBits) + whole_;
       if constexpr (kBits == 32) {
-        const auto rest =
-            static_cast<std::uint32_t>(Words::low(sum_)) | static_cast<std::uint32_t>(floor & 1);
+        const auto rest = static_cast<std::uint32_t>(bits) | static_cast<std::uint32_t>(floor & 1);
         return static_cast<std::int64_t>(floor + (rest > 0x80000000 ? 1 : 0));
       } else {
         constexpr std::uint64_t kOne = std::uint64_t{1} << kBits;
-        const std::uint64_t twice = (Words::low(sum_) & (kOne - 1)) << 1 | (floor & 1);
+        const std::uint64_t twice = (bits & (kOne - 1)) << 1 | (floor & 1);
         return static_cast<std::int64_t>(floor + (twice > kOne ? 1 : 0));
       }
     }
@@ -96,6 +102,7 @@ class Sum {
 
  private:
   typename Words::U128 sum_ = {};
+  std::uint64_t whole_ = 0;
 };
 
 template <>
@@ -106,7 +113,21 @@ struct DivideByHalves {
   static constexpr QuotientRemainder divide(std::uint64_t high, std::uint64_t low, std::uint64_t divisor) {
     return divideHalves({high, low}, divisor);
   }
+  /// floor(n 2^48 / d), n < d / 4, d < 2^62.
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return divide(n >> 16, n << 48, d).quotient;
+  }
 };
+
+/// x to the nearest double, or near it.
+inline double nearDouble(std::int64_t x) {
+#if defined(__SSE2__) && defined(__x86_64__)
+  // The plain conversion keeps the upper half of its register, and so waits for whatever was there before.
+  return _mm_cvtsd_f64(_mm_cvtsi64_sd(_mm_setzero_pd(), x));
+#else
+  return static_cast<double>(x);
+#endif
+}
 
 /// Quotients of numbers from an estimate in double, made exact by integers: for processors that have a fast
 /// floating divide but none of 128 by 64 bits. Any rounding mode and contraction gives the same quotient,
@@ -130,6 +151,15 @@ struct DivideByDouble : DivideByHalves {
     rest -= beyond ? divisor : 0;
     const std::int64_t twice = 2 * rest + static_cast<std::int64_t>(quotient & 1);
     return quotient + (twice > divisor ? 1 : 0);
+  }
+
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    if (std::is_constant_evaluated()) return DivideByHalves::fraction48(n, d);
+    const auto divisor = static_cast<std::int64_t>(d);
+    const auto quotient = static_cast<std::int64_t>(nearDouble(static_cast<std::int64_t>(n)) *
+                                                    281474976710656.0 / nearDouble(divisor));
+    const auto rest = static_cast<std::int64_t>((n << 48) - static_cast<std::uint64_t>(quotient) * d);
+    return static_cast<std::uint64_t>(quotient + (rest >= divisor ? 1 : 0) - (rest < 0 ? 1 : 0));
   }
 };
 
@@ -244,7 +274,7 @@ struct RootByDouble {
   static constexpr std::uint64_t squareRoot(std::int64_t x) {
     if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::squareRoot<kBits>(x);
     constexpr double kScale = static_cast<double>(std::uint64_t{1} << kBits);
-    const auto root = static_cast<std::int64_t>(__builtin_sqrt(static_cast<double>(x) * kScale) + 0.5);
+    const auto root = static_cast<std::int64_t>(__builtin_sqrt(nearDouble(x) * kScale) + 0.5);
     return corrected(root, (static_cast<std::uint64_t>(x) << kBits));
   }
 
@@ -252,7 +282,7 @@ struct RootByDouble {
   template <class Words>
   static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
     if (!std::is_constant_evaluated()) {
-      const auto xd = static_cast<double>(x), yd = static_cast<double>(y);
+      const double xd = nearDouble(x), yd = nearDouble(y);
       const double estimate = __builtin_sqrt(xd * xd + yd * yd) + 0.5;
       if (estimate < 281474976710656.0) [[likely]] {  // 2^48
         const auto xBits = static_cast<std::uint64_t>(x), yBits = static_cast<std::uint64_t>(y);
@@ -267,11 +297,13 @@ struct RootByDouble {
   static constexpr UnitEstimate unit(std::int64_t x, std::int64_t y) {
     if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::unit<kBits>(x, y);
     constexpr double kScale = static_cast<double>(std::uint64_t{1} << (kBits + kGuardBits));
-    const auto xd = static_cast<double>(x < 0 ? -static_cast<double>(x) : static_cast<double>(x));
-    const auto yd = static_cast<double>(y < 0 ? -static_cast<double>(y) : static_cast<double>(y));
+    const double xd = nearDouble(x), yd = nearDouble(y);
     const double inverse = kScale / __builtin_sqrt(xd * xd + yd * yd);
-    return {static_cast<std::uint64_t>(static_cast<std::int64_t>(xd * inverse)),
-            static_cast<std::uint64_t>(static_cast<std::int64_t>(yd * inverse))};
+    const auto component = [&](double v) {
+      const auto scaled = static_cast<std::int64_t>(v * inverse);
+      return static_cast<std::uint64_t>(scaled < 0 ? -scaled : scaled);
+    };
+    return {component(xd), component(yd)};
   }
 
  private:
@@ -295,7 +327,14 @@ struct NativeWords {
   static constexpr std::uint64_t high(U128 a) { return static_cast<std::uint64_t>(a >> 64); }
   static constexpr std::uint64_t low(U128 a) { return static_cast<std::uint64_t>(a); }
   static constexpr U128 multiply(std::uint64_t a, std::uint64_t b) { return U128{a} * b; }
+  static constexpr std::uint64_t multiplyShort(std::uint64_t a, std::uint64_t b) {
+    return high(multiply(a, b << 31));
+  }
   static constexpr U128 multiplySigned(std::int64_t a, std::int64_t b) {
+#if !defined(__clang__)
+    // gcc 12 otherwise stores the sign-extended factor to the stack, though nothing ever reads it.
+    if (!std::is_constant_evaluated()) asm("" : "+r"(b));
+#endif
     return static_cast<U128>(NativeSigned128{a} * b);
   }
 };
@@ -306,6 +345,9 @@ struct DivideByNative {
     const Native128 numerator = NativeWords::make(high, low);
     const auto quotient = static_cast<std::uint64_t>(numerator / divisor);
     return {quotient, low - quotient * divisor};
+  }
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return static_cast<std::uint64_t>((Native128{n} << 48) / d);
   }
 };
 inline constexpr bool kHasNativeWords = true;
@@ -326,6 +368,9 @@ struct DivideByHardware {
         : [divisor] "rm"(divisor), "a"(low), "d"(high)
         : "cc");
     return result;
+  }
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return divide(n >> 16, n << 48, d).quotient;
   }
 };
 inline constexpr bool kHasHardwareDivide = true;
