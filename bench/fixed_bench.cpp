@@ -31,7 +31,9 @@ struct Portable {
 
 constexpr std::int64_t kLeast = Fixed::lowest().raw(), kMost = Fixed::max().raw();
 
-double lift(double x, std::uint64_t bits) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) ^ bits); }
+double lift(double x, std::uint64_t bits) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) ^ bits);
+}
 Fixed lift(Fixed x, std::uint64_t bits) { return Fixed::fromRaw(x.raw() ^ static_cast<std::int64_t>(bits)); }
 Portable lift(Portable x, std::uint64_t bits) { return Portable(x.bits ^ static_cast<std::int64_t>(bits)); }
 std::uint64_t bitsOf(double x) { return std::bit_cast<std::uint64_t>(x); }
@@ -48,7 +50,7 @@ std::uint64_t bitsOf(const Components<S>& x) {
 
 template <class S>
 struct Inputs {
-  std::array<S, kCount> a, b, c, d, e, f, g, h;
+  alignas(64) std::array<S, kCount> a, b, c, d, e, f, g, h;
 };
 
 /// Where an operation takes its arguments from.
@@ -67,8 +69,8 @@ const Inputs<S>& inputs(Domain domain) {
     };
     for (int i = 0; i < kCount; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      for (std::array<S, kCount>* const column : {&result.a, &result.b, &result.c, &result.d,
-                                                &result.e, &result.f, &result.g, &result.h}) {
+      for (std::array<S, kCount>* const column :
+           {&result.a, &result.b, &result.c, &result.d, &result.e, &result.f, &result.g, &result.h}) {
         const double unit = next();
         (*column)[at] = kind == Domain::signedHundred ? S(200 * unit - 100)
                         : kind == Domain::positive    ? S(std::exp2(40 * unit - 10) + 0.001)
@@ -87,8 +89,10 @@ using Result = decltype(Op{}(S{}, S{}, S{}, S{}));
 
 template <class Op, class S>
 void throughput(benchmark::State& state) {
-  const Inputs<S>& in = inputs<S>(Op::kDomain);
-  std::array<Result<Op, S>, kCount> out{};
+  const Inputs<S>* source = &inputs<S>(Op::kDomain);
+  benchmark::DoNotOptimize(source);  // not known when compiling
+  const Inputs<S>& in = *source;
+  alignas(64) std::array<Result<Op, S>, kCount> out{};
   for ([[maybe_unused]] auto round : state) {
     for (std::size_t i = 0; i < kCount; ++i) {
       if constexpr (requires { Op::kRow; }) {
@@ -104,7 +108,9 @@ void throughput(benchmark::State& state) {
 
 template <class Op, class S>
 void latency(benchmark::State& state) {
-  const Inputs<S>& in = inputs<S>(Op::kDomain);
+  const Inputs<S>* source = &inputs<S>(Op::kDomain);
+  benchmark::DoNotOptimize(source);  // not known when compiling
+  const Inputs<S>& in = *source;
   // Zero, but not known to the compiler: makes each call wait for the result of the one before.
   volatile std::uint64_t zero = 0;
   const std::uint64_t mask = zero;
@@ -253,19 +259,25 @@ struct Exp {
   static constexpr Domain kDomain = Domain::exponent;
   Fixed operator()(Fixed a, Fixed, Fixed, Fixed) const { return exp(a); }
   double operator()(double a, double, double, double) const { return std::exp(a); }
-  Portable operator()(Portable a, Portable, Portable, Portable) const { return Portable(raw::exp<Way>(a.bits).raw); }
+  Portable operator()(Portable a, Portable, Portable, Portable) const {
+    return Portable(raw::exp<Way>(a.bits).raw);
+  }
 };
 struct Exp2 {
   static constexpr Domain kDomain = Domain::exponent;
   Fixed operator()(Fixed a, Fixed, Fixed, Fixed) const { return exp2(a); }
   double operator()(double a, double, double, double) const { return std::exp2(a); }
-  Portable operator()(Portable a, Portable, Portable, Portable) const { return Portable(raw::exp2<Way>(a.bits).raw); }
+  Portable operator()(Portable a, Portable, Portable, Portable) const {
+    return Portable(raw::exp2<Way>(a.bits).raw);
+  }
 };
 struct Log2 {
   static constexpr Domain kDomain = Domain::positive;
   Fixed operator()(Fixed a, Fixed, Fixed, Fixed) const { return log2(a); }
   double operator()(double a, double, double, double) const { return std::log2(a); }
-  Portable operator()(Portable a, Portable, Portable, Portable) const { return Portable(raw::log2<Way>(a.bits)); }
+  Portable operator()(Portable a, Portable, Portable, Portable) const {
+    return Portable(raw::log2<Way>(a.bits));
+  }
 };
 struct Pow {
   static constexpr Domain kDomain = Domain::exponent;
@@ -276,7 +288,6 @@ struct Pow {
     return Portable(raw::pow<Way>(a.bits < 0 ? -a.bits : a.bits, b.bits).raw);
   }
 };
-
 
 std::vector<std::string>& order() {
   static std::vector<std::string> names;
@@ -308,15 +319,17 @@ class TableReporter : public benchmark::BenchmarkReporter {
     }
   }
   void Finalize() override {
-    std::printf("| operation | double ns | Fixed ns | ratio | portable ns | to Fixed | double latency ns | Fixed latency ns | ratio |\n");
+    std::printf(
+        "| operation | double ns | Fixed ns | ratio | portable ns | to Fixed | double latency ns | Fixed "
+        "latency ns | ratio |\n");
     std::printf("|---|---|---|---|---|---|---|---|---|\n");
     for (const std::string& name : order()) {
       if (times_.count(name + "/fixed/throughput") == 0) continue;
       const double d = best(name + "/double/throughput"), f = best(name + "/fixed/throughput");
       const double p = best(name + "/portable/throughput");
       const double dl = best(name + "/double/latency"), fl = best(name + "/fixed/latency");
-      std::printf("| %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", name.c_str(), d, f, f / d, p,
-                  p / f, dl, fl, fl / dl);
+      std::printf("| %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", name.c_str(), d, f,
+                  f / d, p, p / f, dl, fl, fl / dl);
     }
   }
 

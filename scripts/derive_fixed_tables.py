@@ -63,9 +63,8 @@ def rest(z):
     t = sqrt(z)
     return (1 - atan(t) / t) / z
 arc, arcError = fit(rest, limit, 5)
-scalar("(1 - atan(t) / t) / z at z = 0, Q64.", "kArcFirst", fixed(arc[0], 64))
-emit(f"Its powers 1 to 4 of z, Q32; error {float(arcError):.1e}.", "kArcTerms",
-     [fixed(c, 32) for c in arc[1:]], "std::int64_t")
+emit(f"(1 - atan(t) / t) / z; powers 0 to 4 of z, Q32; error {float(arcError):.1e}.", "kArcTerms",
+     [fixed(c, 32) for c in arc], "std::int64_t")
 base = [mpf(0), atan(mpf(1) / 2), pi / 4]
 emit("atan(0), atan(1/2), atan(1), Q62; the same from pi / 2 back, from pi back, and from pi / 2 on.", "kArcBase",
      [fixed(v, 62) for v in base + [pi / 2 - b for b in base] + [pi - b for b in base] + [pi / 2 + b for b in base]])

@@ -29,11 +29,9 @@ inline constexpr std::array<std::uint64_t, 3> kCosineTerms = {0x7ffffffffff82d2b
 /// Powers 3 to 5, Q42.
 inline constexpr std::array<std::int64_t, 3> kCosineHighTerms = {-0x5574ee8c, 0xf0f3e6, -0x1a0ee};
 
-/// (1 - atan(t) / t) / z at z = 0, Q64.
-inline constexpr std::uint64_t kArcFirst = 0x55555554ff83ed96;
-
-/// Its powers 1 to 4 of z, Q32; error 7.8e-11.
-inline constexpr std::array<std::int64_t, 4> kArcTerms = {-0x3333320b, 0x2491a537, -0x1c51cb92, 0x14b0aaa2};
+/// (1 - atan(t) / t) / z; powers 0 to 4 of z, Q32; error 7.8e-11.
+inline constexpr std::array<std::int64_t, 5> kArcTerms = {0x55555555, -0x3333320b, 0x2491a537, -0x1c51cb92,
+                                                          0x14b0aaa2};
 
 /// atan(0), atan(1/2), atan(1), Q62; the same from pi / 2 back, from pi back, and from pi / 2 on.
 inline constexpr std::array<std::uint64_t, 12> kArcBase = {0x0,

@@ -16,12 +16,6 @@ constexpr std::uint64_t multiplyHigh(std::uint64_t a, std::uint64_t b) {
   return Way::Words::high(Way::Words::multiply(a, b));
 }
 
-/// x or -x without a branch.
-constexpr std::int64_t negatedIf(bool negate, std::uint64_t x) {
-  const std::uint64_t mask = 0 - static_cast<std::uint64_t>(negate);
-  return static_cast<std::int64_t>((x ^ mask) - mask);
-}
-
 struct RawSinCos {
   std::int64_t sin, cos;
 
@@ -84,21 +78,22 @@ constexpr std::int64_t atan2(std::int64_t y, std::int64_t x) {
   const std::uint64_t top = 2 * n - base * d;
   const bool below = top >> 63 != 0;
   const std::uint64_t t =
-      Way::Divide::fraction48(static_cast<std::uint64_t>(negatedIf(below, top)), 2 * d + base * n) << 16;
-  const std::uint64_t z = multiplyHigh<Way>(t, t);
-  const auto shortZ = static_cast<std::int64_t>(z >> 28);  // Q36, below 2^32
+      Way::Divide::fraction48(static_cast<std::uint64_t>(negatedIf(below, top)), 2 * d + base * n);
+  const std::uint64_t shortT = (t + (1 << 13)) >> 14;  // Q34, below 2^32
+  const std::uint64_t z = shortT * shortT >> 32;       // Q36, below 2^32
+  const auto signedZ = static_cast<std::int64_t>(z);
   // Two halves of the sum side by side, for they are waited for.
-  const std::int64_t lower = kArcTerms[0] + (kArcTerms[1] * shortZ >> 36);
-  const std::int64_t upper = kArcTerms[2] + (kArcTerms[3] * shortZ >> 36);
-  const auto shortSquare = static_cast<std::int64_t>((z >> 28) * (z >> 28) >> 36);
+  const std::int64_t lower = kArcTerms[1] + (kArcTerms[2] * signedZ >> 36);
+  const std::int64_t upper = kArcTerms[3] + (kArcTerms[4] * signedZ >> 36);
+  const auto shortSquare = static_cast<std::int64_t>(z * z >> 36);
   const std::int64_t sum = lower + (upper * shortSquare >> 36);
-  const std::uint64_t whole = kArcFirst + static_cast<std::uint64_t>(sum * shortZ >> 4);
-  const std::uint64_t part = t - multiplyHigh<Way>(multiplyHigh<Way>(t, z), whole);
+  const auto factor = static_cast<std::uint64_t>(kArcTerms[0] + (sum * signedZ >> 36));
+  const std::uint64_t cube = shortT * z;                                // Q70, below 2^64
+  const std::uint64_t part = (t << 14) - ((cube >> 32) * factor >> 8);  // Q62
   // Mirrored at the diagonal where steep, and at the y axis where x < 0. Q62.
   const bool left = x < 0;
   const std::uint64_t from = kArcBase[base + (steep ? 3u : 0u) + (left ? 6u : 0u)];
-  const std::uint64_t angle =
-      from + static_cast<std::uint64_t>(negatedIf((below != steep) != left, part >> 2));
+  const std::uint64_t angle = from + static_cast<std::uint64_t>(negatedIf((below != steep) != left, part));
   return negatedIf(y < 0, (angle + (std::uint64_t{1} << 29)) >> 30);
 }
 
@@ -119,8 +114,8 @@ constexpr Quotient exp2OfQ88(std::uint64_t high, std::uint64_t low) {
   sum = kPowerTerms[0] + (multiplyHigh<Way>(sum, d) >> 6);
   const std::uint64_t growth = multiplyHigh<Way>(sum, d);  // 2^d - 1, Q70
   using Words = typename Way::Words;
-  const auto power =
-      Words::make(kPowerHigh[i], kPowerLow[i]) + (Words::multiply(kPowerHigh[i], growth) >> 6);  // Q127
+  const std::uint64_t grown = multiplyHigh<Way>(kPowerHigh[i], growth);                                // Q69
+  const auto power = Words::make(kPowerHigh[i], kPowerLow[i]) + Words::make(grown >> 6, grown << 58);  // Q127
   const std::uint64_t mantissa = Words::high(power);
   const int shift = static_cast<int>(31 - whole);  // 1 to 64
   const std::uint64_t twice = mantissa >> (shift - 1);
