@@ -192,6 +192,7 @@ constexpr std::int64_t squareRoot(std::int64_t x) {
 /// sqrt(x^2 + y^2); saturates to `most`.
 template <class Way>
 constexpr Quotient length(std::int64_t x, std::int64_t y, std::int64_t most) {
+  if ((x | y) == 0) [[unlikely]] return {0, true};
   const std::uint64_t root = Way::Root::template length<typename Way::Words>(x, y);
   if (root > magnitude(most)) return {most, false};
   return {static_cast<std::int64_t>(root), true};

@@ -208,7 +208,7 @@ struct RootByInteger {
     return roundedRoot(n.high, n.low);
   }
 
-  /// sqrt(x^2 + y^2) to nearest.
+  /// sqrt(x^2 + y^2) to nearest, not both 0.
   template <class Words>
   static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
     const auto square = Words::multiplySigned(x, x) + Words::multiplySigned(y, y);
@@ -279,7 +279,7 @@ struct RootByDouble {
     return corrected(root, (static_cast<std::uint64_t>(x) << kBits));
   }
 
-  /// sqrt(x^2 + y^2) to nearest.
+  /// sqrt(x^2 + y^2) to nearest, not both 0.
   template <class Words>
   static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
     if (!std::is_constant_evaluated()) {
