@@ -198,13 +198,12 @@ void BBTree<S>::findChanged(const BBTree* resting) {
   found_.clear();
   for (const IndexKey key : changed_) {
     if (!tree_.contains(key)) continue;
-    const GridBox box = tree_.box(key);
-    tree_.query(box, [&](IndexKey other) {
-      const bool othersTurn = other <= key && (changes_[other] & kMovedHere) != 0;
+    tree_.queryAround(key, [&](IndexKey other) {
+      const bool othersTurn = other < key && (changes_[other] & kMovedHere) != 0;
       if (!othersTurn) found_.push_back(packed(key, other));
     });
     if (resting == nullptr) continue;
-    resting->tree_.query(box, [&](IndexKey other) { found_.push_back(packed(key, other)); });
+    resting->tree_.query(tree_.box(key), [&](IndexKey other) { found_.push_back(packed(key, other)); });
   }
   if (resting == nullptr) return;
   for (const IndexKey key : resting->changed_) {
@@ -220,6 +219,7 @@ template <Scalar S>
 void BBTree<S>::sortFound() {
   constexpr std::size_t kFew = 48;
   if (found_.size() <= kFew) {
+    // total order: integers
     std::sort(found_.begin(), found_.end());
     return;
   }
@@ -267,6 +267,7 @@ template <Scalar S>
 void BBTree<S>::collectIn(const BB<S>& box, std::vector<IndexKey>& keys) const {
   keys.clear();
   tree_.query(gridBox(box), [&keys](IndexKey key) { keys.push_back(key); });
+  // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }
 
@@ -281,6 +282,7 @@ void BBTree<S>::collectAlong(const Vector<S>& a, const Vector<S>& b, S radius,
                                gridCeil(radius),
                                onGrid(a) && onGrid(b) && radius <= kGridEdge<S>};
   tree_.query(segment, [&keys](IndexKey key) { keys.push_back(key); });
+  // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }
 
@@ -348,7 +350,7 @@ std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
   std::vector<KeyPair> all;
   for (IndexKey key = 0; key < tree_.keyEnd(); ++key) {
     if (!tree_.contains(key)) continue;
-    tree_.query(tree_.box(key), [&all, key](IndexKey other) {
+    tree_.queryAround(key, [&all, key](IndexKey other) {
       if (key < other) all.push_back({key, other});
     });
   }
@@ -358,6 +360,7 @@ std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
     };
     this->collideStatic(*this->staticIndex(), add, &all);
   }
+  // total order: pairs of integers
   std::sort(all.begin(), all.end());
   return all;
 }

@@ -254,8 +254,8 @@ const char* Body<S>::cannotStep() const {
 
 template <Scalar S>
 typename Body<S>::Motion Body<S>::accelerated(const Vector<S>& gravity, S damping, S dt) const {
-  const Vector<S> pull = gravity + Vector<S>(acceleration(force_.x, inverseMass_),
-                                             acceleration(force_.y, inverseMass_));
+  const Vector<S> pull =
+      gravity + Vector<S>(acceleration(force_.x, inverseMass_), acceleration(force_.y, inverseMass_));
   const S spin = rotates() ? acceleration(torque_, inverseMoment_) : S(0);
   return {{dot(velocity_.x, damping, pull.x, dt), dot(velocity_.y, damping, pull.y, dt)},
           dot(angularVelocity_, damping, spin, dt)};
@@ -313,9 +313,9 @@ void Body<S>::updateVelocity(const Vector<S>& gravity, S damping, S dt) {
   if (!isDynamic()) return;
   const char* reason = cannotStep();
   if (reason != nullptr) fail<Fault::IllegalBody>(reason);
-  require<Fault::IllegalBody>(within(gravity, kMaxAcceleration<S>) && within(damping, S(1)) &&
-                                  within(dt, kMaxTimeStep<S>),
-                              kBadVelocity);
+  require<Fault::IllegalBody>(
+      within(gravity, kMaxAcceleration<S>) && within(damping, S(1)) && within(dt, kMaxTimeStep<S>),
+      kBadVelocity);
   const Motion motion = accelerated(gravity, damping, dt);
   require<Fault::IllegalBody>(within(motion.velocity, kMaxSpeed<S>), kBadVelocity);
   require<Fault::IllegalBody>(within(motion.angularVelocity, kMaxAngularSpeed<S>), kBadAngularVelocity);
@@ -329,8 +329,8 @@ template <Scalar S>
 S Body<S>::kineticEnergy() const {
   if (!isDynamic()) return S(0);
   const auto square = [](S x) { return toScaled(x) * toScaled(x); };
-  const Scaled<S> twice = toScaled(mass_) * (square(velocity_.x) + square(velocity_.y)) +
-                          moment_ * square(angularVelocity_);
+  const Scaled<S> twice =
+      toScaled(mass_) * (square(velocity_.x) + square(velocity_.y)) + moment_ * square(angularVelocity_);
   return toScalar<S>(twice * toScaled(ratio<S>(1, 2)));
 }
 

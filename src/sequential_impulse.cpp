@@ -17,7 +17,8 @@ inline constexpr S kMaxFrictionRatio = S(1 << 10);
 /// too small for the mass and size of a body is ever held.
 template <Scalar S>
 S heldMoment(S moment, const Vector<S>& arm) {
-  if (moment <= S(256)) [[likely]] return moment;
+  if (moment <= S(256)) [[likely]]
+    return moment;
   const S reach = max(abs(arm.x), abs(arm.y));
   const S least = ratio<S>(1, 1024);
   const S held = max(reach, least);
@@ -46,8 +47,8 @@ PairResponse<S> respond(const Body<S>& a, const Body<S>& b) {
 
 template <Scalar S>
 S effectiveInverseMass(const PairResponse<S>& response, S armA, S armB) {
-  const S k = dot(response.momentA * armA, armA, response.momentB * armB, armB) +
-              (response.massA + response.massB);
+  const S k =
+      dot(response.momentA * armA, armA, response.momentB * armB, armB) + (response.massA + response.massB);
   require<Fault::UnsolvableCollision>(k > S(0));
   return k;
 }
@@ -97,8 +98,8 @@ void ContactSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
     const S gap = dot(contact.pointB - contact.pointA, n);
     row.bias = -(min(gap + slop, S(0)) * biasRate);
     const Vector<S> dv = vb.velocity - va.velocity;
-    const S approach = dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, vb.angularVelocity, -row.normalArmA,
-                            va.angularVelocity);
+    const S approach =
+        dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, vb.angularVelocity, -row.normalArmA, va.angularVelocity);
     row.bounce = approach * pair.elasticity;
     row.normalSum = clamp(mulDiv(contact.normalSpeed, normalK, S(1)), S(0), kMaxSum<S>);
     row.tangentSum = clamp(mulDiv(contact.tangentSpeed, tangentK, S(1)), -kMaxSum<S>, kMaxSum<S>);
@@ -151,9 +152,9 @@ void ContactSolver<S>::iterate() {
     const Vector<S> dv = b.velocity - a.velocity;
     const S normalSpeed =
         dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, b.angularVelocity, -row.normalArmA, a.angularVelocity);
-    const S tangentSpeed = dot4(-n.y, dv.x, n.x, dv.y, row.tangentArmB, b.angularVelocity, -row.tangentArmA,
-                                a.angularVelocity) +
-                           row.surface;
+    const S tangentSpeed =
+        dot4(-n.y, dv.x, n.x, dv.y, row.tangentArmB, b.angularVelocity, -row.tangentArmA, a.angularVelocity) +
+        row.surface;
     const S normalBefore = row.normalSum;
     row.normalSum = clamp(normalBefore - (row.bounce + normalSpeed), S(0), kMaxSum<S>);
     const S limit = row.friction * row.normalSum;

@@ -209,7 +209,8 @@ MassProperties<S> Space<S>::massOfShapes(BodyId id, ShapeId replaced, const Shap
     const auto visitShape = [&](const Shape<S>& shape) {
       const ShapeMassInfo<S>& info = shape.massInfo();
       if (info.mass > S(0)) {
-        visit(Part{toScaled(info.mass), toScaled(info.centroid.x), toScaled(info.centroid.y), info.unitMoment});
+        visit(
+            Part{toScaled(info.mass), toScaled(info.centroid.x), toScaled(info.centroid.y), info.unitMoment});
       }
     };
     for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {

@@ -75,7 +75,8 @@ void Space<S>::Impl::prepareShape(std::uint32_t index, const Shape<S>& shape) {
 template <Scalar S>
 void Space<S>::Impl::putBox(std::uint32_t shape, bool isStatic, const BB<S>& box, const Vector<S>& velocity) {
   BBTree<S>& other = isStatic ? dynamicTree : staticTree;
-  if (other.contains(shape)) [[unlikely]] other.remove(shape);
+  if (other.contains(shape)) [[unlikely]]
+    other.remove(shape);
   if (isStatic) {
     staticTree.update(shape, box);
   } else {
@@ -161,7 +162,8 @@ std::span<const std::uint32_t> Space<S>::threadOf(BodyId id) {
     for (std::uint32_t body = 0; body < slots; ++body) impl.threadStart[body + 1] += impl.threadStart[body];
     impl.threadPairs.resize(impl.threadStart[slots]);
     impl.threadFill = impl.threadStart;
-    eachEnd([&](std::uint32_t body, std::uint32_t pair) { impl.threadPairs[impl.threadFill[body]++] = pair; });
+    eachEnd(
+        [&](std::uint32_t body, std::uint32_t pair) { impl.threadPairs[impl.threadFill[body]++] = pair; });
     impl.threadsKnown = true;
   }
   return {impl.threadPairs.data() + impl.threadStart[id.index],

@@ -14,7 +14,8 @@ template <Scalar S>
 Arbiter<S> Space<S>::arbiterOf(Pair<S>& pair) {
   const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
   const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
-  return {pair, state_.bodies.valueAt(shapeA.body().index), state_.bodies.valueAt(shapeB.body().index), shapeA, shapeB};
+  return {pair, state_.bodies.valueAt(shapeA.body().index), state_.bodies.valueAt(shapeB.body().index),
+          shapeA, shapeB};
 }
 
 /// The handler bound to a pair of types in this order, to a type, or to all; null if none is.

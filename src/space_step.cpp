@@ -44,8 +44,10 @@ void Space<S>::checkStep(S dt) const {
     if (!state_.bodies.aliveAt(i)) continue;
     const Body<S>& body = state_.bodies.valueAt(i);
     const char* reason = body.cannotStep();
-    if (reason != nullptr) [[unlikely]] fail<Fault::IllegalBody>(reason);
-    if (body.positionFunc() != 0 || body.velocityFunc() != 0) [[unlikely]] requireCallbacks(body);
+    if (reason != nullptr) [[unlikely]]
+      fail<Fault::IllegalBody>(reason);
+    if (body.positionFunc() != 0 || body.velocityFunc() != 0) [[unlikely]]
+      requireCallbacks(body);
   }
 }
 
@@ -263,8 +265,8 @@ void Space<S>::preStep(S dt) {
     if (pair.solved == 0) continue;
     const std::uint32_t a = state_.shapes.valueAt(pair.a.index).body().index;
     const std::uint32_t b = state_.shapes.valueAt(pair.b.index).body().index;
-    impl.solver.preStep(pair, solverIndexOf(a), solverIndexOf(b), state_.bodies.valueAt(a), state_.bodies.valueAt(b),
-                        collisionSlop(), biasRate);
+    impl.solver.preStep(pair, solverIndexOf(a), solverIndexOf(b), state_.bodies.valueAt(a),
+                        state_.bodies.valueAt(b), collisionSlop(), biasRate);
   }
   endStage(Stage::preStep);
 }
@@ -331,7 +333,8 @@ template <Scalar S>
 void Space<S>::listRangeEvents() {
   rangeEvents_.clear();
   for (std::uint32_t i = 0; i < impl_->held.size(); ++i) {
-    if (impl_->held[i] != 0) [[unlikely]] rangeEvents_.push_back({state_.bodies.idAt(i), impl_->held[i]});
+    if (impl_->held[i] != 0) [[unlikely]]
+      rangeEvents_.push_back({state_.bodies.idAt(i), impl_->held[i]});
   }
   endStage(Stage::callbacks);
 }

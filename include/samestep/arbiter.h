@@ -141,8 +141,8 @@ class Arbiter {
   /// MIS: arbiterGetContactPointSet
   ContactPointSet<S> contactPointSet() const;
   /// Replaces normal and points for this step.
-  /// @throws ImmutableNumContacts, ValueOutOfRange for a point out of the world or a normal that is no unit vector
-  /// MIS: arbiterSetContactPointSet
+  /// @throws ImmutableNumContacts, ValueOutOfRange for a point out of the world or a normal that is no unit
+  /// vector MIS: arbiterSetContactPointSet
   void setContactPointSet(const ContactPointSet<S>& set);
 
   /// Whether the shapes began to touch in this step. MIS: arbiterIsFirstContact
@@ -159,7 +159,8 @@ class Arbiter {
 
   /// The impulse of the last step on B, friction included, N s, saturated. MIS: arbiterTotalImpulse
   Vector<S> totalImpulse() const;
-  /// What the impulses of the last step took from the bodies' kinetic energy, J, saturated. MIS: arbiterTotalKE
+  /// What the impulses of the last step took from the bodies' kinetic energy, J, saturated. MIS:
+  /// arbiterTotalKE
   S totalKE() const;
 
   /// The state behind it.

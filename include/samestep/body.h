@@ -27,8 +27,8 @@ using CallbackNumber = std::uint32_t;
 template <Scalar S>
 struct MassProperties {
   S mass{};
-  Scaled<S> moment{};       ///< kg m^2 about the centre of mass.
-  Vector<S> centerOfMass{}; ///< In body coordinates, m.
+  Scaled<S> moment{};        ///< kg m^2 about the centre of mass.
+  Vector<S> centerOfMass{};  ///< In body coordinates, m.
 };
 
 /// A rigid body: mass, pose and motion about its centre of mass. MIS section 4.

@@ -14,7 +14,7 @@ inline constexpr int kMaxEpaIterations = 30;
 inline constexpr int kWarnGjkIterations = 20;
 inline constexpr int kWarnEpaIterations = 20;
 
-/// The most points a pair can touch in.
+/// The most points a pair can touch in. MIS: MAX_CONTACTS_PER_ARBITER
 inline constexpr int kMaxContactsPerPair = 2;
 
 /// Remarks of the collision search: the MIS's HighIterWarning, counted instead of printed.

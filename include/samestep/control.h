@@ -56,10 +56,10 @@ LoopIndices loopIndices(std::span<const Vector<S>> points);
 /// @param points     at least one; any order, repeats allowed, coordinates within 2^20 m
 /// @param result     as long as `points`, which it may be itself; the hull comes first, the rest is scratch
 /// @param first      if not null: where in `points` the first point of the hull stood
-/// @param tolerance  metres >= 0; points less than this outside an edge are left out too
+/// @param tolerance  0 to 2^20 m; points less than this outside an edge are left out too
 /// @return how many points the hull has: 1 when all points are equal, 2 when they lie on a line
 /// @throws IndexOutOfBounds without points or where `result` is shorter than `points`; ValueOutOfRange where
-///         a coordinate or the tolerance is not finite, or the tolerance negative
+///         a coordinate or the tolerance is outside its range
 /// Quick hull: O(n log n) for scattered points, O(n^2) at worst.
 /// MIS: convexHull
 template <Scalar S>

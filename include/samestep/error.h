@@ -47,16 +47,16 @@ enum class Fault : std::uint8_t {
   StaticBodyMass,
   UnsolvableCollision,
   // Beyond the MIS.
-  InfiniteMoment,      ///< A moment of inertia that is infinite; see Body::nonRotating.
-  MassOutOfRange,      ///< A mass outside [1e-3, 1e6] kg that is not 0.
-  MomentOutOfRange,    ///< A moment of inertia outside the supported range that is not 0.
-  SizeOutOfRange,      ///< A length of a shape outside the supported range.
-  ValueOutOfRange,     ///< Any other number that is not finite or outside its documented range.
-  DegenerateShape,     ///< A polygon without area, with too few points or not convex; a segment that is a point.
-  TooManyVertices,     ///< A polygon with more vertices than kMaxPolyVertices.
-  BodyHasShapes,       ///< Removing a body that still has shapes.
-  MissingCallback,     ///< A callback number without a registered function.
-  ForeignWorld,        ///< A saved state of another kind of world.
+  InfiniteMoment,    ///< A moment of inertia that is infinite; see Body::nonRotating.
+  MassOutOfRange,    ///< A mass outside [1e-3, 1e6] kg that is not 0.
+  MomentOutOfRange,  ///< A moment of inertia outside the supported range that is not 0.
+  SizeOutOfRange,    ///< A length of a shape outside the supported range.
+  ValueOutOfRange,   ///< Any other number that is not finite or outside its documented range.
+  DegenerateShape,  ///< A polygon without area, with too few points or not convex; a segment that is a point.
+  TooManyVertices,  ///< A polygon with more vertices than kMaxPolyVertices.
+  BodyHasShapes,    ///< Removing a body that still has shapes.
+  MissingCallback,  ///< A callback number without a registered function.
+  ForeignWorld,     ///< A saved state of another kind of world.
 };
 
 /// The sentence a user reads: the MIS's own where it has one.
@@ -146,11 +146,13 @@ template <Fault F>
 /// Refuses the call unless the condition holds. Called before anything changes.
 template <Fault F>
 [[gnu::always_inline]] inline constexpr void require(bool condition) {
-  if (!condition) [[unlikely]] fail<F>();
+  if (!condition) [[unlikely]]
+    fail<F>();
 }
 template <Fault F>
 [[gnu::always_inline]] inline constexpr void require(bool condition, const char* text) {
-  if (!condition) [[unlikely]] fail<F>(text);
+  if (!condition) [[unlikely]]
+    fail<F>(text);
 }
 
 /// Called with the fault before a build without exceptions aborts. Default: none.

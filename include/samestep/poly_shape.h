@@ -74,6 +74,9 @@ class PolyShape : public ConstPolyShape<S> {
 
   /// Makes any shape this polygon; the surface, filter and ids stay, the mass too.
   static void assign(Shape<S>& shape, std::span<const Vector<S>> vertices, S radius);
+  /// The same with the hull of the points under a transform.
+  static void assignHull(Shape<S>& shape, std::span<const Vector<S>> points, const Transform<S>& transform,
+                         S radius);
 
  private:
   Shape<S>& shape_;

@@ -62,6 +62,9 @@ class SegmentShape : public ConstSegmentShape<S> {
   static void assign(Shape<S>& shape, const Vector<S>& a, const Vector<S>& b, S radius);
 
  private:
+  static void setGeometry(Shape<S>& shape, const Vector<S>& a, const Vector<S>& b, S radius,
+                          const Vector<S>& tangentA, const Vector<S>& tangentB);
+
   Shape<S>& shape_;
 };
 

@@ -75,7 +75,7 @@ class Shape {
   /// MIS: shapeGetBody
   constexpr BodyId body() const { return body_; }
   /// For a shape outside of any Space; a Space moves no shape to another body.
-  constexpr void setBody(BodyId body) { body_ = body; }
+  constexpr void setBody(BodyId bodyId) { body_ = bodyId; }
 
   /// The id its Space knows it by; not valid() outside of one. MIS: shapeGetSpace
   constexpr ShapeId id() const { return id_; }
@@ -159,7 +159,8 @@ class Shape {
   friend constexpr bool operator==(const Shape&, const Shape&) = default;
 
   /// Visits every field that is state, in order, as visit(name, field). `Self` is Shape or const Shape. Past
-  /// the count the vertices are zero. The owner is no state: it names a Space of this process.
+  /// the count the vertices are zero: a reader starts from a new Shape. The owner is no state: it names a
+  /// Space of this process.
   template <class Self, class Visit>
   static constexpr void fields(Self& self, Visit&& visit) {
     visit("type", self.type_);
@@ -180,7 +181,7 @@ class Shape {
     visit("centroid", self.massInfo_.centroid);
     visit("unitMoment", self.massInfo_.unitMoment);
     visit("area", self.massInfo_.area);
-    visit("vertices", self.vertices_);
+    for (int i = 0; i < min<int>(self.count_, kMaxPolyVertices); ++i) visit("vertex", self.vertices_[i]);
   }
 
   /// Whether the record could have been made by the functions of this library, the ids and the surface apart:
@@ -191,6 +192,9 @@ class Shape {
   friend class CircleShape<S>;
   friend class SegmentShape<S>;
   friend class PolyShape<S>;
+
+  void setGeometry(ShapeType type, std::span<const Vector<S>> vertices, S radius,
+                   const ShapeMassInfo<S>& massInfo);
 
   ShapeMassInfo<S> massInfo_;
   S radius_{};

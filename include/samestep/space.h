@@ -411,7 +411,8 @@ class Space {
   // other. They see the poses as they are now.
 
   /// The shapes within `distance` metres of a point; sensors included.
-  void pointQuery(const Vector<S>& point, S distance, const ShapeFilter& filter, std::vector<PointHit<S>>& hits);
+  void pointQuery(const Vector<S>& point, S distance, const ShapeFilter& filter,
+                  std::vector<PointHit<S>>& hits);
   /// The shapes that a segment of a radius touches.
   void segmentQuery(const Vector<S>& start, const Vector<S>& end, S radius, const ShapeFilter& filter,
                     std::vector<SegmentHit<S>>& hits);

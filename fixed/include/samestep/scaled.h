@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "samestep/fixed.h"
+#include "samestep/wide.h"
 
 namespace samestep {
 
@@ -25,6 +26,12 @@ class ScaledFixed {
   /// Exact.
   explicit constexpr ScaledFixed(S x)
       : ScaledFixed(rounded(x.raw() < 0, 0, raw::magnitude(x.raw()), -S::kBits)) {}
+
+  /// Rounded once, to 63 bits.
+  explicit constexpr ScaledFixed(WideFixed<S> x) {
+    const Halves size = sign(x) < 0 ? Halves{0, 0} - Halves{x.high(), x.low()} : Halves{x.high(), x.low()};
+    *this = rounded(sign(x) < 0, size.high, size.low, -2 * S::kBits);
+  }
 
   /// The number with these parts, as mantissa() and exponent() gave them.
   /// @return zero where they are none that a ScaledFixed can have
@@ -161,6 +168,12 @@ struct ScaledOf<S> {
 /// Exact.
 template <FixedNumber S>
 constexpr ScaledFixed<S> toScaled(S x) {
+  return ScaledFixed<S>(x);
+}
+
+/// Rounded once, to 63 bits.
+template <FixedNumber S>
+constexpr ScaledFixed<S> toScaled(WideFixed<S> x) {
   return ScaledFixed<S>(x);
 }
 

@@ -46,8 +46,8 @@ struct PortableWords {
     constexpr std::int64_t rounded() const {
       const std::uint64_t floor =
           whole_ + static_cast<std::uint64_t>(static_cast<std::int64_t>(fraction_) >> 32);
-      const std::uint64_t roundUp = ((fraction_ & kMask) + (kMask >> 1) + (floor & 1)) >> 32;
-      return static_cast<std::int64_t>(floor + roundUp);
+      const auto rest = static_cast<std::uint32_t>(fraction_) | static_cast<std::uint32_t>(floor & 1);
+      return static_cast<std::int64_t>(floor + (rest > 0x80000000 ? 1 : 0));
     }
 
    private:
@@ -80,10 +80,17 @@ class Sum {
     if constexpr (kBits == 0) {
       return static_cast<std::int64_t>(Words::low(sum_));
     } else {
-      constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+      // An odd floor makes a tie look like more than half.
       const std::uint64_t floor = Words::low(sum_ >> kBits);
-      const std::uint64_t roundUp = ((Words::low(sum_) & kMask) + (kMask >> 1) + (floor & 1)) >> kBits;
-      return static_cast<std::int64_t>(floor + roundUp);
+      if constexpr (kBits == 32) {
+        const auto rest =
+            static_cast<std::uint32_t>(Words::low(sum_)) | static_cast<std::uint32_t>(floor & 1);
+        return static_cast<std::int64_t>(floor + (rest > 0x80000000 ? 1 : 0));
+      } else {
+        constexpr std::uint64_t kOne = std::uint64_t{1} << kBits;
+        const std::uint64_t twice = (Words::low(sum_) & (kOne - 1)) << 1 | (floor & 1);
+        return static_cast<std::int64_t>(floor + (twice > kOne ? 1 : 0));
+      }
     }
   }
 
@@ -101,86 +108,178 @@ struct DivideByHalves {
   }
 };
 
-/// 128 by 64 bits by two estimates in double, each made exact by integers: for processors that have a fast
+/// Quotients of numbers from an estimate in double, made exact by integers: for processors that have a fast
 /// floating divide but none of 128 by 64 bits. Any rounding mode and contraction gives the same quotient,
-/// because the estimates are only required to be near.
-struct DivideByDouble {
-  static constexpr QuotientRemainder divide(std::uint64_t high, std::uint64_t low, std::uint64_t divisor) {
-    // Scaled so that the divisor has its top bit: the quotient of the upper parts then has 64 bits at most.
-    const int shift = std::countl_zero(divisor);
-    const std::uint64_t d = divisor << shift;
-    const Halves n = Halves{high, low} << shift;
-    const double inverse = 18446744073709551616.0 / static_cast<double>(d);
-    // The first estimate is right to about 2^-50 of the quotient; rounded down it leaves a remainder that
-    // the second one brings to within one unit.
-    const std::uint64_t first = estimate(n.high, n.low, inverse);
-    Halves rest = n - PortableWords::multiply(first, d);
-    std::uint64_t quotient = first;
-    while (static_cast<std::int64_t>(rest.high) < 0) {
-      const std::uint64_t back = estimate(~rest.high, ~rest.low, inverse) + 1;
-      quotient -= back;
-      rest = rest + PortableWords::multiply(back, d);
-    }
-    while (rest.high != 0 || rest.low >= d) {
-      const std::uint64_t more = estimate(rest.high, rest.low, inverse);
-      const std::uint64_t step = more == 0 ? 1 : more;
-      quotient += step;
-      rest = rest - PortableWords::multiply(step, d);
-      while (static_cast<std::int64_t>(rest.high) < 0) {
-        --quotient;
-        rest = rest + Halves{0, d};
-      }
-    }
-    return {quotient, rest.low >> shift};
-  }
+/// because the estimate is only required to be near.
+struct DivideByDouble : DivideByHalves {
+  static constexpr double kMaxQuotient = 1125899906842624.0;  // 2^50: the estimate is within one unit
+  static constexpr std::uint64_t kMaxDivisor = std::uint64_t{1} << 61;
 
- private:
-  static constexpr std::uint64_t estimate(std::uint64_t high, std::uint64_t low, double inverse) {
-    const double value =
-        (static_cast<double>(high) + static_cast<double>(low) * (1.0 / 18446744073709551616.0)) * inverse;
-    return value >= 18446744073709549568.0 ? ~std::uint64_t{0} : static_cast<std::uint64_t>(value);
+  /// n 2^shift / d to nearest, ties to even, of magnitudes.
+  /// @pre d < kMaxDivisor and estimate(n, d, shift) < kMaxQuotient
+  static constexpr std::uint64_t rounded(double estimate, std::uint64_t n, std::uint64_t d, int shift) {
+    std::uint64_t quotient = static_cast<std::uint64_t>(static_cast<std::int64_t>(estimate));
+    // The remainder is small, so that its low 64 bits are all of it.
+    auto rest = static_cast<std::int64_t>((n << shift) - quotient * d);
+    const auto divisor = static_cast<std::int64_t>(d);
+    const bool below = rest < 0;
+    quotient -= below ? 1 : 0;
+    rest += below ? divisor : 0;
+    const bool beyond = rest >= divisor;
+    quotient += beyond ? 1 : 0;
+    rest -= beyond ? divisor : 0;
+    const std::int64_t twice = 2 * rest + static_cast<std::int64_t>(quotient & 1);
+    return quotient + (twice > divisor ? 1 : 0);
   }
+};
+
+/// The distance from a rounding boundary below which an estimated component of a unit vector is decided
+/// exactly, in units of 2^-kGuardBits of the last place. The estimates are off by less than 8.
+inline constexpr int kGuardBits = 20;
+inline constexpr std::uint64_t kGuardMargin = 64;
+
+/// Estimates of |x| / length and |y| / length with kGuardBits more bits than the result.
+struct UnitEstimate {
+  std::uint64_t x, y;
 };
 
 /// Square roots without floating point.
 struct RootByInteger {
-  /// The largest integer whose square is at most high:low. Newton's iteration from above.
+  /// The largest integer whose square is at most high:low, by halving the problem (P. Zimmermann, Karatsuba
+  /// Square Root, 1999).
   static constexpr std::uint64_t floorRoot(std::uint64_t high, std::uint64_t low) {
     if (high == 0 && low == 0) return 0;
-    const int bits = high != 0 ? 128 - std::countl_zero(high) : 64 - std::countl_zero(low);
-    const int half = (bits + 1) / 2;
-    std::uint64_t root = half == 64 ? ~std::uint64_t{0} : std::uint64_t{1} << half;
-    while (true) {
-      if (high >= root) return root;  // only where the root is 2^64 - 1
-      const std::uint64_t quotient = divideHalves({high, low}, root).quotient;
-      if (quotient >= root) return root;
-      root = root / 2 + quotient / 2 + (root & quotient & 1);
+    const int zeros = high != 0 ? std::countl_zero(high) : 64 + std::countl_zero(low);
+    const Halves n = Halves{high, low} << (zeros & ~1);
+    const Root upper = root64(n.high);
+    // One bit less than the dividend's 65 makes it fit.
+    const std::uint64_t dividend = upper.rest << 31 | n.low >> 33;
+    const std::uint64_t quotient = dividend / upper.root;
+    const std::uint64_t left = dividend % upper.root << 1 | (n.low >> 32 & 1);
+    std::uint64_t root = (upper.root << 32) + quotient;
+    const Halves rest =
+        Halves{left >> 32, left << 32 | (n.low & 0xffffffff)} - multiplyHalves(quotient, quotient);
+    if (rest.high >> 63 != 0) --root;
+    return root >> zeros / 2;
+  }
+
+  /// The root of high:low to nearest; never a tie.
+  static constexpr std::uint64_t roundedRoot(std::uint64_t high, std::uint64_t low) {
+    const std::uint64_t root = floorRoot(high, low);
+    const Halves rest = Halves{high, low} - multiplyHalves(root, root);
+    return root + (rest > Halves{0, root} ? 1 : 0);
+  }
+
+  /// sqrt(x 2^kBits) to nearest, x > 0.
+  template <int kBits>
+  static constexpr std::uint64_t squareRoot(std::int64_t x) {
+    const Halves n = Halves{0, static_cast<std::uint64_t>(x)} << kBits;
+    return roundedRoot(n.high, n.low);
+  }
+
+  /// sqrt(x^2 + y^2) to nearest.
+  template <class Words>
+  static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
+    const auto square = Words::multiplySigned(x, x) + Words::multiplySigned(y, y);
+    return roundedRoot(Words::high(square), Words::low(square));
+  }
+
+  /// @pre not both 0
+  template <int kBits>
+  static constexpr UnitEstimate unit(std::int64_t x, std::int64_t y) {
+    // At 62 bits the root of the sum of squares has 63, and its error does not count.
+    const auto size = [](std::int64_t v) {
+      return v < 0 ? 0 - static_cast<std::uint64_t>(v) : static_cast<std::uint64_t>(v);
+    };
+    const int zeros = std::countl_zero(size(x) | size(y));
+    const std::uint64_t xScaled = size(x) << zeros >> 2, yScaled = size(y) << zeros >> 2;
+    const Halves square = multiplyHalves(xScaled, xScaled) + multiplyHalves(yScaled, yScaled);
+    const std::uint64_t root = floorRoot(square.high, square.low);
+    const auto component = [&](std::uint64_t v) {
+      const Halves scaled = Halves{0, v} << (kBits + kGuardBits);
+      return v >= root ? std::uint64_t{1} << (kBits + kGuardBits) : divideHalves(scaled, root).quotient;
+    };
+    return {component(xScaled), component(yScaled)};
+  }
+
+ private:
+  struct Root {
+    std::uint64_t root, rest;
+  };
+  /// @pre n >= 2^30
+  static constexpr Root root32(std::uint64_t n) {
+    std::uint64_t root = 0, rest = 0;
+    for (int shift = 30; shift >= 0; shift -= 2) {
+      rest = rest << 2 | (n >> shift & 3);
+      const std::uint64_t trial = root << 2 | 1;
+      root <<= 1;
+      if (rest >= trial) {
+        rest -= trial;
+        root |= 1;
+      }
     }
+    return {root, rest};
+  }
+  /// @pre n >= 2^62
+  static constexpr Root root64(std::uint64_t n) {
+    const Root upper = root32(n >> 32);
+    const std::uint64_t dividend = upper.rest << 16 | (n >> 16 & 0xffff);
+    const std::uint64_t quotient = dividend / (2 * upper.root), left = dividend % (2 * upper.root);
+    std::uint64_t root = (upper.root << 16) + quotient;
+    auto rest =
+        static_cast<std::int64_t>(left << 16 | (n & 0xffff)) - static_cast<std::int64_t>(quotient * quotient);
+    if (rest < 0) {
+      rest += static_cast<std::int64_t>(2 * root - 1);
+      --root;
+    }
+    return {root, static_cast<std::uint64_t>(rest)};
   }
 };
 
-/// Square roots from a double estimate, made exact by integers.
+/// Square roots from a double estimate, made exact by integers. The estimate is only required to be within
+/// a quarter of a unit, which leaves a factor of two and more for rounding modes and contraction.
 struct RootByDouble {
-  static constexpr std::uint64_t floorRoot(std::uint64_t high, std::uint64_t low) {
-    if (std::is_constant_evaluated()) return RootByInteger::floorRoot(high, low);
-    const double value = static_cast<double>(high) * 18446744073709551616.0 + static_cast<double>(low);
-    const double estimate = __builtin_sqrt(value);
-    std::uint64_t root =
-        estimate >= 18446744073709549568.0 ? ~std::uint64_t{0} : static_cast<std::uint64_t>(estimate);
-    if (high >> 40 != 0) {
-      // More bits than a double holds: one step of Newton's iteration on the exact remainder.
-      const Halves rest = Halves{high, low} - multiplyHalves(root, root);
-      const bool below = static_cast<std::int64_t>(rest.high) < 0;
-      const Halves size = below ? Halves{} - rest : rest;
-      const double step =
-          (static_cast<double>(size.high) * 18446744073709551616.0 + static_cast<double>(size.low)) /
-          (2.0 * static_cast<double>(root));
-      const auto change = static_cast<std::uint64_t>(step);
-      root = below ? root - change : root + change < root ? ~std::uint64_t{0} : root + change;
+  /// sqrt(x 2^kBits) to nearest, x > 0.
+  template <int kBits>
+  static constexpr std::uint64_t squareRoot(std::int64_t x) {
+    if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::squareRoot<kBits>(x);
+    constexpr double kScale = static_cast<double>(std::uint64_t{1} << kBits);
+    const auto root = static_cast<std::int64_t>(__builtin_sqrt(static_cast<double>(x) * kScale) + 0.5);
+    return corrected(root, (static_cast<std::uint64_t>(x) << kBits));
+  }
+
+  /// sqrt(x^2 + y^2) to nearest.
+  template <class Words>
+  static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
+    if (!std::is_constant_evaluated()) {
+      const auto xd = static_cast<double>(x), yd = static_cast<double>(y);
+      const double estimate = __builtin_sqrt(xd * xd + yd * yd) + 0.5;
+      if (estimate < 281474976710656.0) [[likely]] {  // 2^48
+        const auto xBits = static_cast<std::uint64_t>(x), yBits = static_cast<std::uint64_t>(y);
+        return corrected(static_cast<std::int64_t>(estimate), xBits * xBits + yBits * yBits);
+      }
     }
-    while (multiplyHalves(root, root) > Halves{high, low}) --root;
-    while (root != ~std::uint64_t{0} && multiplyHalves(root + 1, root + 1) <= Halves{high, low}) ++root;
-    return root;
+    return RootByInteger::length<Words>(x, y);
+  }
+
+  /// @pre not both 0
+  template <int kBits>
+  static constexpr UnitEstimate unit(std::int64_t x, std::int64_t y) {
+    if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::unit<kBits>(x, y);
+    constexpr double kScale = static_cast<double>(std::uint64_t{1} << (kBits + kGuardBits));
+    const auto xd = static_cast<double>(x < 0 ? -static_cast<double>(x) : static_cast<double>(x));
+    const auto yd = static_cast<double>(y < 0 ? -static_cast<double>(y) : static_cast<double>(y));
+    const double inverse = kScale / __builtin_sqrt(xd * xd + yd * yd);
+    return {static_cast<std::uint64_t>(static_cast<std::int64_t>(xd * inverse)),
+            static_cast<std::uint64_t>(static_cast<std::int64_t>(yd * inverse))};
+  }
+
+ private:
+  /// The integer nearest to sqrt(n) from one at most one off, below 2^48, and the low half of n.
+  static constexpr std::uint64_t corrected(std::int64_t root, std::uint64_t low) {
+    const auto rest =
+        static_cast<std::int64_t>(low - static_cast<std::uint64_t>(root) * static_cast<std::uint64_t>(root));
+    return static_cast<std::uint64_t>(root + (rest > root ? 1 : 0) - (rest <= -root ? 1 : 0));
   }
 };
 
@@ -243,17 +342,27 @@ struct Way {
   using Root = RootWay;
 };
 
+/// Without a 128-bit integer, but with floating point.
+using Portable = Way<PortableWords, DivideByDouble, RootByDouble>;
 /// Nothing but 64-bit integers.
-using Portable = Way<PortableWords, DivideByHalves, RootByInteger>;
+using IntegerOnly = Way<PortableWords, DivideByHalves, RootByInteger>;
+/// The compiler's 128-bit integers throughout.
+using Native = Way<NativeWords, DivideByNative, RootByDouble>;
+/// The processor's own division.
+using Hardware = Way<NativeWords, DivideByHardware, RootByDouble>;
 
-#if defined(SAMESTEP_FIXED_PORTABLE)
+#if defined(SAMESTEP_FIXED_INTEGER_ONLY)
+using Chosen = IntegerOnly;
+#elif defined(SAMESTEP_FIXED_PORTABLE)
 using Chosen = Portable;
 #elif defined(__x86_64__) && defined(__GNUC__)
-using Chosen = Way<NativeWords, DivideByHardware, RootByDouble>;
+using Chosen = Hardware;
 #elif defined(__SIZEOF_INT128__)
 using Chosen = Way<NativeWords, DivideByDouble, RootByDouble>;
+#elif defined(__SSE2__) || defined(__wasm__) || (defined(__ARM_FP) && (__ARM_FP & 8) != 0)
+using Chosen = Portable;
 #else
-using Chosen = Way<PortableWords, DivideByHalves, RootByInteger>;
+using Chosen = IntegerOnly;
 #endif
 
 }  // namespace samestep::way

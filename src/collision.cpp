@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/collision.h>
+
+#include "clip.h"
+#include "collision_functions.h"
+#include "gjk.h"
+#include "support.h"
+
+namespace samestep {
+namespace {
+
+template <Scalar S>
+void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info) {
+  const Vector<S> delta = b.center.v0 - a.center.v0;
+  const S reach = a.radius + b.radius;
+  if (exactDot(delta, delta) >= exactProduct(reach, reach)) return;
+  info.normal = delta == Vector<S>() ? Vector<S>(S(1), S(0)) : normalize(delta);
+  info.push(mulAdd(info.normal, a.radius, a.center.v0), mulAdd(info.normal, -b.radius, b.center.v0), 0);
+}
+
+/// The tangents of a segment towards its neighbours, in the world; zero without one.
+template <Scalar S>
+Vector<S> tangent(const PlacedShape<S>& segment, int end) {
+  return end == 0 ? segment.planes[2].v0 : segment.planes[2].n;
+}
+
+/// Whether the end of a segment may touch what lies in the direction `away`: not on its neighbour's side.
+/// @param vertex  the end, or -1: no end touches
+template <Scalar S>
+bool endMayTouch(const PlacedShape<S>& shape, int vertex, const Vector<S>& away) {
+  if (shape.type != ShapeType::segment || vertex < 0) return true;
+  return sign(exactDot(away, tangent(shape, vertex))) <= 0;
+}
+
+template <Scalar S>
+void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, const NearestEdge<S>& nearest,
+                    CollisionInfo<S>& info) {
+  const Vector<S> corner = other.planes[nearest.vertex].v0;
+  const Vector<S> delta = corner - circle.center.v0;
+  const S reach = circle.radius + other.radius;
+  const Wide<S> apart = exactDot(delta, delta), limit = exactProduct(reach, reach);
+  // As in Chipmunk, a segment that is only just met is not touched, a polygon is.
+  if (apart > limit || (apart == limit && other.type == ShapeType::segment)) return;
+  const Vector<S> fallback =
+      other.type == ShapeType::segment ? other.planes[1].n : -other.planes[nearest.edge].n;
+  const Vector<S> n = delta == Vector<S>() ? fallback : normalize(delta);
+  if (!endMayTouch(other, nearest.vertex, -n)) return;
+  info.normal = n;
+  info.push(mulAdd(n, circle.radius, circle.center.v0), mulAdd(n, -other.radius, corner), 0);
+}
+
+/// A circle and a segment or polygon. One look at the edges finds what GJK and EPA would.
+template <Scalar S>
+void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, CollisionInfo<S>& info) {
+  const Vector<S> c = circle.center.v0;
+  const NearestEdge<S> nearest = nearestEdge(other, c);
+  const S reach = circle.radius + other.radius;
+  if (nearest.distance > reach) return;
+  if (nearest.vertex >= 0) return circleToCorner(circle, other, nearest, info);
+  if (nearest.distance == reach && other.type == ShapeType::segment) return;
+  const Vector<S> n = -other.planes[nearest.edge].n;
+  info.normal = n;
+  info.push(mulAdd(n, circle.radius, c), mulAdd(n, nearest.distance - other.radius, c), 0);
+}
+
+/// Segments and polygons, in any order.
+template <Scalar S>
+void edgesToEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
+                  CollisionStats* stats) {
+  const Vector<S> reference = a.planes[0].v0;
+  const SupportPair<S> pair{{a, reference}, {b, reference}};
+  // Across the line between the middles of the boxes, twice as long.
+  const Vector<S> axis = perp(Vector<S>((a.box.left - b.box.left) + (a.box.right - b.box.right),
+                                        (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
+  const ClosestPoints<S> closest = gjk(pair, info.id, axis, stats);
+  info.id = closest.id;
+  if (closest.distance > a.radius + b.radius) return;
+  if (!endMayTouch(a, closest.vertexA, closest.normal) || !endMayTouch(b, closest.vertexB, -closest.normal))
+    return;
+  clip(pair, a.radius, b.radius, closest.normal, info);
+}
+
+/// The same contact with the shapes exchanged.
+template <Scalar S>
+void exchange(CollisionInfo<S>& info) {
+  info.normal = -info.normal;
+  for (int i = 0; i < info.count; ++i) {
+    const CollisionPoint<S> p = info.points[i];
+    info.points[i] = {p.pointB, p.pointA, p.hash << 16 | p.hash >> 16};
+  }
+}
+
+}  // namespace
+
+template <Scalar S>
+void collideSorted(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
+                   CollisionStats* stats) {
+  require<Fault::CollisionError>(a.type <= b.type);
+  if (a.type != ShapeType::circle) {
+    edgesToEdges(a, b, info, stats);
+  } else if (b.type == ShapeType::circle) {
+    circleToCircle(a, b, info);
+  } else {
+    circleToEdges(a, b, info);
+  }
+}
+
+template <Scalar S>
+CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
+                         CollisionStats* stats) {
+  CollisionInfo<S> info;
+  info.id = start;
+  if (a.type <= b.type) {
+    collideSorted(a, b, info, stats);
+  } else {
+    collideSorted(b, a, info, stats);
+    exchange(info);
+  }
+  return info;
+}
+
+template <Scalar S>
+ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, const Shape<S>& b,
+                                 const Transform<S>& poseB) {
+  const Placement<S> placedA(a, poseA), placedB(b, poseB);
+  const CollisionInfo<S> info = collide(*placedA, *placedB);
+  ContactPointSet<S> set;
+  set.count = info.count;
+  if (info.count == 0) return set;
+  set.normal = info.normal;
+  for (int i = 0; i < info.count; ++i) {
+    const CollisionPoint<S>& p = info.points[i];
+    set.points[i] = {p.pointA, p.pointB, dot(p.pointB - p.pointA, info.normal)};
+  }
+  return set;
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template CollisionInfo<double> collide<double>(const PlacedShape<double>&, const PlacedShape<double>&,
+                                               CollisionId, CollisionStats*);
+template ContactPointSet<double> shapesCollide<double>(const Shape<double>&, const Transform<double>&,
+                                                       const Shape<double>&, const Transform<double>&);
+template void collideSorted<double>(const PlacedShape<double>&, const PlacedShape<double>&,
+                                    CollisionInfo<double>&, CollisionStats*);
+#endif
+template CollisionInfo<Fixed> collide<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
+                                             CollisionId, CollisionStats*);
+template ContactPointSet<Fixed> shapesCollide<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&,
+                                                     const Shape<Fixed>&, const Transform<Fixed>&);
+template void collideSorted<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
+                                   CollisionInfo<Fixed>&, CollisionStats*);
+template CollisionInfo<CheckedFixed> collide<CheckedFixed>(const PlacedShape<CheckedFixed>&,
+                                                           const PlacedShape<CheckedFixed>&, CollisionId,
+                                                           CollisionStats*);
+template ContactPointSet<CheckedFixed> shapesCollide<CheckedFixed>(const Shape<CheckedFixed>&,
+                                                                   const Transform<CheckedFixed>&,
+                                                                   const Shape<CheckedFixed>&,
+                                                                   const Transform<CheckedFixed>&);
+template void collideSorted<CheckedFixed>(const PlacedShape<CheckedFixed>&, const PlacedShape<CheckedFixed>&,
+                                          CollisionInfo<CheckedFixed>&, CollisionStats*);
+
+}  // namespace samestep

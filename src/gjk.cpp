@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include "gjk.h"
+
+#include <utility>
+
+#include "epa.h"
+
+namespace samestep {
+namespace {
+
+/// Which part of an edge is nearest to the origin. MIS: closestT, without its number
+enum class Part { from, inside, to };
+
+template <Scalar S>
+Part nearestPart(const Vector<S>& v0, const Vector<S>& v1) {
+  const Vector<S> delta = v1 - v0;
+  const Wide<S> along = exactDot(delta, v0 + v1), size = exactDot(delta, delta);
+  if (along >= size) return Part::from;
+  return along <= -size ? Part::to : Part::inside;
+}
+
+/// An edge of the difference with the origin on its left or on its line.
+template <Scalar S>
+struct Edge {
+  MinkowskiPoint<S> v0, v1;
+  Part part{};
+  Vector<S> search;  // From the nearest part towards the origin.
+};
+
+template <Scalar S>
+bool isZero(const Vector<S>& v) {
+  return v == Vector<S>();
+}
+
+/// Turns the edge round if need be, and finds its nearest part and the direction to search in.
+template <Scalar S>
+void look(Edge<S>& edge) {
+  if (leftOf(edge.v1.ab, edge.v0.ab, Vector<S>())) std::swap(edge.v0, edge.v1);
+  edge.part = nearestPart(edge.v0.ab, edge.v1.ab);
+  const Vector<S> across = perp(edge.v1.ab - edge.v0.ab);
+  if (edge.part == Part::inside) {
+    edge.search = across;
+    return;
+  }
+  edge.search = -(edge.part == Part::from ? edge.v0.ab : edge.v1.ab);
+  if (!isZero(edge.search)) return;
+  // The origin is a vertex: turn round it, edge by edge, until all lies on one side.
+  edge.search = isZero(across) ? Vector<S>(S(-1), S(0)) : across;
+}
+
+/// MIS: closestPointsNew, for an edge found nearest.
+template <Scalar S>
+ClosestPoints<S> closestPoints(const Edge<S>& edge) {
+  const MinkowskiPoint<S>&v0 = edge.v0, &v1 = edge.v1;
+  ClosestPoints<S> result;
+  result.id = v0.id() << 16 | v1.id();
+  if (edge.part == Part::inside) {
+    result.normal = rperp(normalize(v1.ab - v0.ab));
+    result.distance = dot(result.normal, v0.ab);
+    result.vertexA = v0.a == v1.a ? v0.a : -1;
+    result.vertexB = v0.b == v1.b ? v0.b : -1;
+    return result;
+  }
+  const MinkowskiPoint<S>& corner = edge.part == Part::from ? v0 : v1;
+  result.vertexA = corner.a;
+  result.vertexB = corner.b;
+  // Two vertices in one place: all of B lies against the direction searched last.
+  result.normal = normalize(isZero(corner.ab) ? -edge.search : corner.ab);
+  result.distance = length(corner.ab);
+  return result;
+}
+
+/// Whether the edge from v0 to p, and not the one from p to v1, holds the point of the triangle nearest to
+/// the origin, which lies outside of the triangle or on its rim. Decided by signs alone: a point outside of
+/// one edge only is nearest to that edge; one outside of both is nearest to the edge that leads towards it.
+template <Scalar S>
+bool nearerToFirst(const Edge<S>& edge, const MinkowskiPoint<S>& p) {
+  const Vector<S>&v0 = edge.v0.ab, &v1 = edge.v1.ab;
+  const int turn = sign(exactCross(v1 - v0, p.ab - v0));
+  if (turn == 0) return edge.part == Part::from;
+  const bool outsideFirst = turn * sign(exactCross(v0 - p.ab, v0 + p.ab)) >= 0;
+  const bool outsideSecond = turn * sign(exactCross(p.ab - v1, p.ab + v1)) >= 0;
+  if (outsideFirst != outsideSecond) return outsideFirst;
+  return sign(exactDot(p.ab, v0 - p.ab)) < 0;
+}
+
+template <Scalar S>
+bool startFrom(const SupportPair<S>& pair, std::uint32_t id, Edge<S>& edge) {
+  const auto part = [&](int shift) { return static_cast<int>(id >> shift & 0xff); };
+  const int a0 = part(24), b0 = part(16), a1 = part(8), b1 = part(0);
+  if (id == 0 || max(a0, a1) >= pair.a.count || max(b0, b1) >= pair.b.count) return false;
+  edge.v0 = pair.vertex(a0, b0);
+  edge.v1 = pair.vertex(a1, b1);
+  // Two old vertices may lie inside the difference now, which is no harm but on the origin itself.
+  return !isZero(edge.v0.ab) && !isZero(edge.v1.ab);
+}
+
+}  // namespace
+
+template <Scalar S>
+ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vector<S>& axis,
+                     CollisionStats* stats) {
+  Edge<S> edge;
+  if (!startFrom(pair, start, edge)) {
+    const Vector<S> across = isZero(axis) ? Vector<S>(S(0), S(1)) : axis;
+    edge.v0 = pair.farthest(across);
+    edge.v1 = pair.farthest(-across);
+  }
+
+  for (int iteration = 1;; ++iteration) {
+    look(edge);
+    const bool late = stats != nullptr && iteration >= kWarnGjkIterations;
+    const Vector<S>& n = edge.search;
+    const MinkowskiPoint<S> p = pair.farthest(n);
+    const bool nothingNearer = exactDot(p.ab, n) <= max(exactDot(edge.v0.ab, n), exactDot(edge.v1.ab, n));
+    if (nothingNearer || iteration > kMaxGjkIterations) {
+      if (late) ++stats->highGjkIterations;
+      return closestPoints(edge);
+    }
+    if (leftOf(p.ab, edge.v0.ab, Vector<S>()) && leftOf(edge.v1.ab, p.ab, Vector<S>())) {
+      if (late) ++stats->highGjkToEpaIterations;
+      return epa(pair, edge.v0, p, edge.v1, stats);
+    }
+    (nearerToFirst(edge, p) ? edge.v1 : edge.v0) = p;
+  }
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template ClosestPoints<double> gjk<double>(const SupportPair<double>&, std::uint32_t, const Vector<double>&,
+                                           CollisionStats*);
+#endif
+template ClosestPoints<Fixed> gjk<Fixed>(const SupportPair<Fixed>&, std::uint32_t, const Vector<Fixed>&,
+                                         CollisionStats*);
+template ClosestPoints<CheckedFixed> gjk<CheckedFixed>(const SupportPair<CheckedFixed>&, std::uint32_t,
+                                                       const Vector<CheckedFixed>&, CollisionStats*);
+
+}  // namespace samestep

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/shape.h>
+
+#include <type_traits>
+
+#include "shape_geometry.h"
+
+namespace samestep {
+
+static_assert(std::is_trivially_copyable_v<Shape<Fixed>>);
+static_assert(std::has_unique_object_representations_v<Shape<Fixed>>, "padding would be copied as garbage");
+
+template <Scalar S>
+void Shape<S>::setMass(S mass) {
+  require<Fault::NaNMass>(!(mass != mass));
+  require<Fault::NegativeMass>(mass >= S(0));
+  require<Fault::InfiniteMass>(isFinite(mass));
+  require<Fault::MassOutOfRange>(massSupported(mass));
+  massInfo_.mass = mass;
+}
+
+template <Scalar S>
+S Shape<S>::density() const {
+  if (sign(massInfo_.area) == 0) return S(0);
+  return toScalar<S>(toScaled(massInfo_.mass) / massInfo_.area);
+}
+
+template <Scalar S>
+void Shape<S>::setDensity(S density) {
+  require<Fault::ValueOutOfRange>(isFinite(density));
+  require<Fault::NegativeMass>(density >= S(0));
+  const Scaled<S> mass = toScaled(density) * massInfo_.area;
+  require<Fault::MassOutOfRange>(mass <= toScaled(kMaxMass<S>));
+  setMass(toScalar<S>(mass));
+}
+
+template <Scalar S>
+S Shape<S>::moment() const {
+  return toScalar<S>(toScaled(massInfo_.mass) * massInfo_.unitMoment);
+}
+
+template <Scalar S>
+S Shape<S>::area() const {
+  return toScalar<S>(massInfo_.area);
+}
+
+template <Scalar S>
+void Shape<S>::setElasticity(S elasticity) {
+  require<Fault::ValueOutOfRange>(isFinite(elasticity) && elasticity <= S(kMaxMaterial));
+  require<Fault::NegativeElasticity>(elasticity >= S(0));
+  elasticity_ = elasticity;
+}
+
+template <Scalar S>
+void Shape<S>::setFriction(S friction) {
+  require<Fault::ValueOutOfRange>(isFinite(friction) && friction <= S(kMaxMaterial));
+  require<Fault::NegativeFriction>(friction >= S(0));
+  friction_ = friction;
+}
+
+template <Scalar S>
+void Shape<S>::setSurfaceVelocity(const Vector<S>& velocity) {
+  require<Fault::ValueOutOfRange>(within(velocity, S(kMaxMaterial)));
+  surfaceVelocity_ = velocity;
+}
+
+template <Scalar S>
+S Shape<S>::extent() const {
+  return extentOf(type_ == ShapeType::segment ? vertices().first(2) : vertices(), radius_);
+}
+
+template <Scalar S>
+void Shape<S>::setGeometry(ShapeType type, std::span<const Vector<S>> vertices, S radius,
+                           const ShapeMassInfo<S>& massInfo) {
+  // Upwards, so that the vertices may be this shape's own.
+  std::size_t i = 0;
+  for (; i < vertices.size(); ++i) vertices_[i] = vertices[i];
+  for (; i < kMaxPolyVertices; ++i) vertices_[i] = Vector<S>();
+  type_ = type;
+  count_ = static_cast<std::uint8_t>(vertices.size());
+  radius_ = radius;
+  massInfo_ = massInfo;
+}
+
+template <Scalar S>
+bool Shape<S>::wellFormed() const {
+  if (sensor_ > 1 || count_ < 1 || count_ > kMaxPolyVertices) return false;
+  for (int i = count_; i < kMaxPolyVertices; ++i) {
+    if (vertices_[i] != Vector<S>()) return false;
+  }
+  const S most(kMaxMaterial);
+  if (!(elasticity_ >= S(0) && elasticity_ <= most && friction_ >= S(0) && friction_ <= most)) return false;
+  if (!within(surfaceVelocity_, most) || !massSupported(massInfo_.mass)) return false;
+
+  const S limit(kMaxExtent);
+  const std::span<const Vector<S>> core =
+      type_ == ShapeType::segment ? vertices().first(min<std::size_t>(2, count_)) : vertices();
+  for (const Vector<S>& v : vertices()) {
+    if (!within(v, limit + limit)) return false;
+  }
+  if (!(radius_ >= S(0)) || !sizeSupported(core, radius_)) return false;
+  switch (type_) {
+    case ShapeType::circle:
+      return count_ == 1 && massInfo_ == circleMassInfo(massInfo_.mass, radius_, vertices_[0]);
+    case ShapeType::segment:
+      return count_ == 4 && vertices_[0] != vertices_[1] &&
+             massInfo_ == segmentMassInfo(massInfo_.mass, vertices_[0], vertices_[1], radius_);
+    case ShapeType::poly:
+      return strictlyConvex(core) && massInfo_ == polyMassInfo(massInfo_.mass, core, radius_);
+  }
+  return false;
+}
+
+namespace {
+
+/// Segment: how many planes each half holds.
+constexpr int kSegmentPlanes = 3;
+
+template <Scalar S>
+void prepareSegment(std::span<const Vector<S>> v, Plane<S>* local) {
+  const Vector<S> normal = rperp(normalize(v[1] - v[0]));
+  local[0] = {v[0], -normal};
+  local[1] = {v[1], normal};
+  local[2] = {v[2], v[3]};
+}
+
+template <Scalar S>
+void preparePoly(std::span<const Vector<S>> v, Plane<S>* local) {
+  Vector<S> previous = v.back();
+  for (const Vector<S>& vertex : v) {
+    *local++ = {vertex, rperp(normalize(vertex - previous))};
+    previous = vertex;
+  }
+}
+
+/// Moves vertices and normals, and returns the box around the vertices.
+template <Scalar S>
+BB<S> movePlanes(const Transform<S>& pose, const Plane<S>* local, Plane<S>* world, int count) {
+  BB<S> box;
+  for (int i = 0; i < count; ++i) {
+    const Vector<S> v = transformPoint(pose, local[i].v0);
+    world[i] = {v, transformVect(pose, local[i].n)};
+    box = i == 0 ? BB<S>(v.x, v.y, v.x, v.y) : expand(box, v);
+  }
+  return box;
+}
+
+}  // namespace
+
+template <Scalar S>
+int planeCount(const Shape<S>& shape) {
+  switch (shape.type()) {
+    case ShapeType::circle:
+      return 0;
+    case ShapeType::segment:
+      return 2 * kSegmentPlanes;
+    case ShapeType::poly:
+      return 2 * static_cast<int>(shape.vertices().size());
+  }
+  return 0;
+}
+
+template <Scalar S>
+void prepare(const Shape<S>& shape, PlacedShape<S>& out) {
+  const std::span<const Vector<S>> v = shape.vertices();
+  out.type = shape.type();
+  out.radius = shape.radius();
+  switch (shape.type()) {
+    case ShapeType::circle:
+      out.count = 1;
+      out.center.n = v[0];
+      break;
+    case ShapeType::segment:
+      out.count = 2;
+      prepareSegment(v, out.planes + kSegmentPlanes);
+      break;
+    case ShapeType::poly:
+      out.count = static_cast<std::uint8_t>(v.size());
+      preparePoly(v, out.planes + v.size());
+      break;
+  }
+}
+
+template <Scalar S>
+BB<S> place(const Transform<S>& pose, PlacedShape<S>& placed) {
+  BB<S> core;
+  switch (placed.type) {
+    case ShapeType::circle: {
+      const Vector<S> c = transformPoint(pose, placed.center.n);
+      placed.center.v0 = c;
+      core = BB<S>(c.x, c.y, c.x, c.y);
+      break;
+    }
+    case ShapeType::segment: {
+      const Plane<S>* local = placed.planes + kSegmentPlanes;
+      core = movePlanes(pose, local, placed.planes, 2);
+      placed.planes[2] = {transformVect(pose, local[2].v0), transformVect(pose, local[2].n)};
+      break;
+    }
+    case ShapeType::poly:
+      core = movePlanes(pose, placed.planes + placed.count, placed.planes, placed.count);
+      break;
+  }
+  return placed.box = inflate(core, placed.radius);
+}
+
+template <Scalar S>
+BB<S> place(const Shape<S>& shape, const Transform<S>& pose, PlacedShape<S>& out) {
+  prepare(shape, out);
+  return place(pose, out);
+}
+
+template <Scalar S>
+BB<S> boundingBox(const Shape<S>& shape, const Transform<S>& pose) {
+  return Placement<S>(shape, pose)->box;
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class Shape<double>;
+template int planeCount<double>(const Shape<double>&);
+template void prepare<double>(const Shape<double>&, PlacedShape<double>&);
+template BB<double> place<double>(const Transform<double>&, PlacedShape<double>&);
+template BB<double> place<double>(const Shape<double>&, const Transform<double>&, PlacedShape<double>&);
+template BB<double> boundingBox<double>(const Shape<double>&, const Transform<double>&);
+#endif
+template class Shape<Fixed>;
+template int planeCount<Fixed>(const Shape<Fixed>&);
+template void prepare<Fixed>(const Shape<Fixed>&, PlacedShape<Fixed>&);
+template BB<Fixed> place<Fixed>(const Transform<Fixed>&, PlacedShape<Fixed>&);
+template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, PlacedShape<Fixed>&);
+template BB<Fixed> boundingBox<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&);
+template class Shape<CheckedFixed>;
+template int planeCount<CheckedFixed>(const Shape<CheckedFixed>&);
+template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, PlacedShape<CheckedFixed>&);
+template BB<CheckedFixed> place<CheckedFixed>(const Transform<CheckedFixed>&, PlacedShape<CheckedFixed>&);
+template BB<CheckedFixed> place<CheckedFixed>(const Shape<CheckedFixed>&, const Transform<CheckedFixed>&,
+                                              PlacedShape<CheckedFixed>&);
+template BB<CheckedFixed> boundingBox<CheckedFixed>(const Shape<CheckedFixed>&,
+                                                    const Transform<CheckedFixed>&);
+
+}  // namespace samestep

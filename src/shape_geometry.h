@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <samestep/limits.h>
+#include <samestep/shape.h>
+
+namespace samestep {
+
+// What makes the geometry of a shape acceptable, and its mass: each said once, for the factories, the setters
+// and what is read from outside.
+
+template <Scalar S>
+bool finite(const Vector<S>& v) {
+  return isFinite(v.x) && isFinite(v.y);
+}
+
+/// Metres from the origin to the farthest point. The points must lie within +-2 kMaxExtent.
+template <Scalar S>
+S extentOf(std::span<const Vector<S>> points, S radius) {
+  S farthest(0);
+  for (const Vector<S>& v : points) farthest = max(farthest, length(v));
+  return farthest + radius;
+}
+
+template <Scalar S>
+bool sizeSupported(std::span<const Vector<S>> points, S radius) {
+  const S limit(kMaxExtent);
+  if (radius > limit) return false;
+  for (const Vector<S>& v : points) {
+    if (!within(v, limit)) return false;
+  }
+  return extentOf(points, radius) <= limit;
+}
+
+/// What all shapes require of their points and radius.
+/// @throws ValueOutOfRange, NegativeRadius, SizeOutOfRange
+template <Scalar S>
+void requireSupported(std::span<const Vector<S>> points, S radius) {
+  for (const Vector<S>& v : points) require<Fault::ValueOutOfRange>(finite(v));
+  require<Fault::ValueOutOfRange>(isFinite(radius));
+  require<Fault::NegativeRadius>(radius >= S(0));
+  require<Fault::SizeOutOfRange>(sizeSupported(points, radius));
+}
+
+/// Whether the points go counter-clockwise round a convex polygon with no straight angle. Every vertex is
+/// held against every edge: a star turns left everywhere too.
+template <Scalar S>
+bool strictlyConvex(std::span<const Vector<S>> points) {
+  const std::size_t count = points.size();
+  if (count < 3) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t next = i + 1 < count ? i + 1 : 0;
+    const Vector<S> edge = points[next] - points[i];
+    for (std::size_t j = 0; j < count; ++j) {
+      if (j == i || j == next) continue;
+      if (sign(exactCross(edge, points[j] - points[i])) <= 0) return false;
+    }
+  }
+  return true;
+}
+
+template <Scalar S>
+bool massSupported(S mass) {
+  return mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>);
+}
+
+template <Scalar S>
+ShapeMassInfo<S> circleMassInfo(S mass, S radius, const Vector<S>& offset);
+template <Scalar S>
+ShapeMassInfo<S> segmentMassInfo(S mass, const Vector<S>& a, const Vector<S>& b, S radius);
+template <Scalar S>
+ShapeMassInfo<S> polyMassInfo(S mass, std::span<const Vector<S>> vertices, S radius);
+
+/// The same unit and squares at the precision masses are kept with.
+template <Scalar S>
+Scaled<S> scaledLengthSq(const Vector<S>& v) {
+  return toScaled(exactDot(v, v));
+}
+template <Scalar S>
+Scaled<S> scaledRatio(int numerator, int denominator) {
+  return toScaled(S(numerator)) / toScaled(S(denominator));
+}
+
+}  // namespace samestep
