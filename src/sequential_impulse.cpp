@@ -60,8 +60,6 @@ void ContactSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
   const Vector<S> n = pair.normal;
   const Vector<S> t = perp(n);
   const S surface = dot(pair.surfaceVelocity, t);
-  const SolverBody<S>& va = bodies[indexA];
-  const SolverBody<S>& vb = bodies[indexB];
   for (int i = 0; i < pair.count; ++i) {
     const Contact<S>& contact = pair.contacts[i];
     const Vector<S> armA = contact.pointA - a.worldCenter();
@@ -97,9 +95,9 @@ void ContactSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
 
     const S gap = dot(contact.pointB - contact.pointA, n);
     row.bias = -(min(gap + slop, S(0)) * biasRate);
-    const Vector<S> dv = vb.velocity - va.velocity;
+    const Vector<S> dv = b.velocity() - a.velocity();
     const S approach =
-        dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, vb.angularVelocity, -row.normalArmA, va.angularVelocity);
+        dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, b.angularVelocity(), -row.normalArmA, a.angularVelocity());
     row.bounce = approach * pair.elasticity;
     row.normalSum = clamp(mulDiv(contact.normalSpeed, normalK, S(1)), S(0), kMaxSum<S>);
     row.tangentSum = clamp(mulDiv(contact.tangentSpeed, tangentK, S(1)), -kMaxSum<S>, kMaxSum<S>);
