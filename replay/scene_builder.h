@@ -57,7 +57,7 @@ class SceneBuilder {
   std::uint32_t newName(const Cursor& at, const std::string& name);
   /// kNoName where there is none.
   std::uint32_t nameOf(const std::string& name) const;
-  void addEvent(const Event& event, const Cursor& at);
+  void addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name, Command<S>&& command);
 
   Scene<S>& scene_;
   const SceneSource::Document& document_;

@@ -60,9 +60,9 @@ std::vector<std::string_view> splitFields(std::string_view line) {
 }  // namespace
 
 template <Scalar S>
-void SceneBuilder<S>::addEvent(const Event& event, const Cursor& at) {
+void SceneBuilder<S>::addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name, Command<S>&& command) {
   if (scene_.events_.size() >= kMaxSceneEvents) at.fail("too many events");
-  scene_.events_.push_back(event);
+  scene_.events_.emplace_back(tick, name, std::move(command));
 }
 
 template <Scalar S>
@@ -93,7 +93,7 @@ void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
   if (!kind) word.fail("no command of this name");
   if (*kind == CommandKind::spawn) {
     if (at.at("body").has("grid")) at.at("body").at("grid").fail("a spawn brings in one body");
-    addEvent({tick, spawned, readBody(at.at("body"))}, at);
+    addEvent(at, tick, spawned, readBody(at.at("body")));
     return;
   }
   const std::uint32_t name = nameOf(at.at("body").text());
@@ -105,7 +105,7 @@ void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
     value = at.at("value").template vector<S>();
   }
   const Vector<S> arm = at.has("arm") ? at.at("arm").template vector<S>() : Vector<S>();
-  addEvent({tick, name, commandWith<S>(*kind, value, arm)}, at);
+  addEvent(at, tick, name, commandWith<S>(*kind, value, arm));
 }
 
 /// A file of lines "tick,body,do,x,y", the first of which says so.
@@ -138,7 +138,7 @@ void SceneBuilder<S>::readInputs(const Cursor& at) {
       if (reason != nullptr) fail("\"" + std::string(digits) + "\": " + reason);
       return value;
     };
-    addEvent({tick, name, commandWith<S>(*kind, {number(fields[3]), number(fields[4])}, {})}, at);
+    addEvent(at, tick, name, commandWith<S>(*kind, {number(fields[3]), number(fields[4])}, {}));
   });
   if (header) throw SceneError(file, 1, "", "the first line must be: tick,body,do,x,y");
 }

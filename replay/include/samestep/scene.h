@@ -91,6 +91,8 @@ class Scene {
  private:
   /// A command whose body is still a name.
   struct Event {
+    Event(std::uint64_t tickIn, std::uint32_t nameIn, Command<S>&& commandIn)
+        : tick(tickIn), name(nameIn), command(std::move(commandIn)) {}
     std::uint64_t tick;
     std::uint32_t name;
     Command<S> command;
