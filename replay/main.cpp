@@ -31,6 +31,8 @@ int main(int argc, char** argv) {
   int result = kGood;
   addScenes(app, result);
   addHash(app, result);
+  addRecord(app, result);
+  addVerify(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

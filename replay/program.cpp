@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-#include <samestep/version.h>
+#include <samestep/error.h>
 
 namespace samestep::program {
 namespace {
@@ -29,6 +29,11 @@ void addScalarOption(CLI::App& app, std::string& scalar) {
       ->capture_default_str();
 }
 
+void addTicksOption(CLI::App& app, std::uint64_t& ticks) {
+  app.add_option("--ticks", ticks, "How many steps to make; as the scene says if not given")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40));
+}
+
 std::int64_t milliseconds() {
   using namespace std::chrono;  // not in results: shown to people only
   // not in results: shown to people only
@@ -41,22 +46,20 @@ Progress::Progress(const char* what, std::uint64_t total)
       next_(samestep::program::milliseconds() + kQuietMilliseconds),
       terminal_(isatty(STDERR_FILENO) == 1) {}
 
-Progress::~Progress() {
+void Progress::clear() {
   if (shown_) std::fprintf(stderr, "\r\033[K");
+  shown_ = false;
 }
 
-void Progress::at(std::uint64_t done) {
+void Progress::at(std::uint64_t done, std::uint64_t total) {
   // The clock costs more than a small step.
-  if (terminal_ && done % 16 == 0) show(done);
-}
-
-void Progress::show(std::uint64_t done) {
+  if (!terminal_ || done % 16 != 0) return;
   const std::int64_t now = samestep::program::milliseconds();
   if (now < next_) return;
   next_ = now + kRefreshMilliseconds;
   shown_ = true;
   std::fprintf(stderr, "\r\033[K%s: %llu of %llu ticks", what_, static_cast<unsigned long long>(done),
-               static_cast<unsigned long long>(total_));
+               static_cast<unsigned long long>(total));
   std::fflush(stderr);
 }
 
@@ -88,6 +91,15 @@ void writeFile(const std::string& path, std::span<const std::uint8_t> bytes) {
 
 void writeFile(const std::string& path, const std::string& text) {
   writeFile(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+void tell(const std::string& file, const std::exception& error) {
+  std::fflush(stdout);
+  std::string place = file;
+  if (const auto* format = dynamic_cast<const FormatError*>(&error)) {
+    place += ": offset " + std::to_string(format->offset());
+  }
+  std::fprintf(stderr, "samestep: %s: %s\n", place.c_str(), error.what());
 }
 
 std::string hex(std::uint64_t value) {

@@ -42,6 +42,9 @@ void addDraw(CLI::App& app, int& result);
 /// Adds --scalar with the scalars of this build.
 void addScalarOption(CLI::App& app, std::string& scalar);
 
+/// Adds --ticks; 0 stands for not given.
+void addTicksOption(CLI::App& app, std::uint64_t& ticks);
+
 /// Calls visit(S()) for the scalar of that name.
 /// @throws Unusable where this build lacks it
 template <class Visit>
@@ -58,11 +61,13 @@ int withScalar(const std::string& name, Visit&& visit) {
 class Progress {
  public:
   Progress(const char* what, std::uint64_t total);
-  ~Progress();
-  void at(std::uint64_t done);
+  ~Progress() { clear(); }
+  void at(std::uint64_t done) { at(done, total_); }
+  void at(std::uint64_t done, std::uint64_t total);
+  /// Takes it off the terminal.
+  void clear();
 
  private:
-  void show(std::uint64_t done);
 
   const char* what_;
   std::uint64_t total_;
@@ -80,6 +85,9 @@ std::vector<std::uint8_t> readFile(const std::string& path);
 /// @throws Unusable
 void writeFile(const std::string& path, std::span<const std::uint8_t> bytes);
 void writeFile(const std::string& path, const std::string& text);
+
+/// Says on the error output what is wrong with a file, with the offset of bytes that are malformed.
+void tell(const std::string& file, const std::exception& error);
 
 /// 16 hexadecimal digits.
 std::string hex(std::uint64_t value);

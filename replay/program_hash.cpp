@@ -38,8 +38,7 @@ void addHash(CLI::App& app, int& result) {
   auto options = std::make_shared<Options>();
   word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")->required();
   addScalarOption(*word, options->scalar);
-  word->add_option("--ticks", options->ticks, "How many steps to make; as the scene says if not given")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40));
+  addTicksOption(*word, options->ticks);
   word->add_option("--every", options->every, "Print only every K-th tick")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str();
