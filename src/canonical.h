@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include <samestep/counted.h>
 #include <samestep/id.h>
 #include <samestep/vector.h>
 
@@ -50,9 +51,9 @@ class CanonicalWriter {
   template <class T>
   requires std::is_enum_v<T>
   void put(T value) { put(static_cast<std::underlying_type_t<T>>(value)); }
-  template <class T, std::size_t kCount>
-  void put(const T (&values)[kCount]) {
-    for (const T& value : values) put(value);
+  template <class T>
+  void put(const Counted<T>& field) {
+    for (std::uint32_t i = 0; i < field.count; ++i) put(field.values[i]);
   }
   /// A number with mantissa and exponent.
   template <class T>

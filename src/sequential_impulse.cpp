@@ -25,6 +25,13 @@ S heldMoment(S moment, const Vector<S>& arm) {
   return min(moment, S(1 << 24) / held / held);
 }
 
+/// a * b, held within +-kMaxSum.
+template <Scalar S>
+S productHeld(S a, S k) {
+  const S product = k <= S(1 << 10) ? a * k : mulDiv(a, k, S(1));
+  return clamp(product, -kMaxSum<S>, kMaxSum<S>);
+}
+
 template <Scalar S>
 S relativeMoment(const Body<S>& body, const Scaled<S>& lighterMass) {
   if (body.inverseMoment() == Scaled<S>{}) return S(0);
@@ -82,25 +89,26 @@ void ContactSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
     const S tangentMass = reciprocal(tangentK);
     row.speedA = response.massA * normalMass;
     row.speedB = response.massB * normalMass;
-    row.spinA = mulDiv(response.momentA, row.normalArmA, normalK);
-    row.spinB = mulDiv(response.momentB, row.normalArmB, normalK);
+    row.spinA = response.momentA * row.normalArmA * normalMass;
+    row.spinB = response.momentB * row.normalArmB * normalMass;
     row.tangentSpeedA = response.massA * tangentMass;
     row.tangentSpeedB = response.massB * tangentMass;
-    row.tangentSpinA = mulDiv(response.momentA, row.tangentArmA, tangentK);
-    row.tangentSpinB = mulDiv(response.momentB, row.tangentArmB, tangentK);
+    row.tangentSpinA = response.momentA * row.tangentArmA * tangentMass;
+    row.tangentSpinB = response.momentB * row.tangentArmB * tangentMass;
     row.normalScale = normalMass;
     row.tangentScale = tangentMass;
     row.friction = min(mulDiv(pair.friction, tangentK, normalK), kMaxFrictionRatio<S>);
     row.surface = surface;
 
     const S gap = dot(contact.pointB - contact.pointA, n);
-    row.bias = -(min(gap + slop, S(0)) * biasRate);
+    const S overlap = clamp(-(gap + slop), S(0), S(1 << 10));
+    row.bias = min(overlap * biasRate, kMaxSpeed<S>);
     const Vector<S> dv = b.velocity() - a.velocity();
     const S approach =
         dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, b.angularVelocity(), -row.normalArmA, a.angularVelocity());
     row.bounce = approach * pair.elasticity;
-    row.normalSum = clamp(mulDiv(contact.normalSpeed, normalK, S(1)), S(0), kMaxSum<S>);
-    row.tangentSum = clamp(mulDiv(contact.tangentSpeed, tangentK, S(1)), -kMaxSum<S>, kMaxSum<S>);
+    row.normalSum = productHeld(contact.normalSpeed, normalK);
+    row.tangentSum = productHeld(contact.tangentSpeed, tangentK);
   }
 }
 
