@@ -65,23 +65,26 @@ inline double far(const Vector<double>& a, const Vector<double>& b) {
 inline cpVect toChipmunk(const Vector<double>& v) { return cpv(v.x, v.y); }
 inline Vector<double> fromChipmunk(cpVect v) { return {v.x, v.y}; }
 
+/// A shape of Chipmunk on a body, to be freed by the caller.
+inline cpShape* newChipmunkShape(cpBody* body, const ShapeRecipe& recipe) {
+  std::vector<cpVect> points;
+  for (const Vector<double>& v : recipe.points) points.push_back(toChipmunk(v));
+  switch (recipe.type) {
+    case ShapeType::circle:
+      return cpCircleShapeNew(body, recipe.radius, points[0]);
+    case ShapeType::segment:
+      return cpSegmentShapeNew(body, points[0], points[1], recipe.radius);
+    case ShapeType::poly:
+      return cpPolyShapeNewRaw(body, static_cast<int>(points.size()), points.data(), recipe.radius);
+  }
+  return nullptr;
+}
+
 /// A shape of Chipmunk with a body of its own, posed by the very numbers of a Transform.
 class ChipmunkShape {
  public:
-  ChipmunkShape(const ShapeRecipe& recipe, const Transform<double>& pose) : body_(cpBodyNew(1, 1)) {
-    std::vector<cpVect> points;
-    for (const Vector<double>& v : recipe.points) points.push_back(toChipmunk(v));
-    switch (recipe.type) {
-      case ShapeType::circle:
-        shape_ = cpCircleShapeNew(body_, recipe.radius, points[0]);
-        break;
-      case ShapeType::segment:
-        shape_ = cpSegmentShapeNew(body_, points[0], points[1], recipe.radius);
-        break;
-      case ShapeType::poly:
-        shape_ = cpPolyShapeNewRaw(body_, static_cast<int>(points.size()), points.data(), recipe.radius);
-        break;
-    }
+  ChipmunkShape(const ShapeRecipe& recipe, const Transform<double>& pose)
+      : body_(cpBodyNew(1, 1)), shape_(newChipmunkShape(body_, recipe)) {
     move(pose);
   }
   ChipmunkShape(const ChipmunkShape&) = delete;
@@ -99,7 +102,7 @@ class ChipmunkShape {
 
  private:
   cpBody* body_;
-  cpShape* shape_ = nullptr;
+  cpShape* shape_;
 };
 
 /// Random numbers with 20 fraction bits: exact in every scalar.
