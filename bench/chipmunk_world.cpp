@@ -26,8 +26,12 @@ class ChipmunkWorld : public World {
     }
   }
   ~ChipmunkWorld() override {
-    cpSpaceEachShape(space_, [](cpShape* shape, void* all) { static_cast<std::vector<cpShape*>*>(all)->push_back(shape); }, &shapes_);
-    cpSpaceEachBody(space_, [](cpBody* body, void* all) { static_cast<std::vector<cpBody*>*>(all)->push_back(body); }, &bodies_);
+    cpSpaceEachShape(
+        space_, [](cpShape* shape, void* all) { static_cast<std::vector<cpShape*>*>(all)->push_back(shape); },
+        &shapes_);
+    cpSpaceEachBody(
+        space_, [](cpBody* body, void* all) { static_cast<std::vector<cpBody*>*>(all)->push_back(body); },
+        &bodies_);
     for (cpShape* shape : shapes_) {
       cpSpaceRemoveShape(space_, shape);
       cpShapeFree(shape);

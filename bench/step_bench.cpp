@@ -76,10 +76,12 @@ int main(int argc, char** argv) {
   using namespace samestep::bench;
   benchmark::Initialize(&argc, argv);
   static std::map<std::string, PeerScene> scenes;
-  for (const char* name : kScenes) scenes[name] = readScene(std::string(SAMESTEP_BENCH_SCENES "/") + name + ".csv");
+  for (const char* name : kScenes)
+    scenes[name] = readScene(std::string(SAMESTEP_BENCH_SCENES "/") + name + ".csv");
   for (const char* name : kScenes) {
     for (const Engine& engine : kEngines) {
-      benchmark::RegisterBenchmark((std::string(name) + "/" + engine.name).c_str(), run, scenes[name], engine.make)
+      benchmark::RegisterBenchmark((std::string(name) + "/" + engine.name).c_str(), run, scenes[name],
+                                   engine.make)
           ->UseManualTime()
           ->Iterations(1)
           ->Repetitions(7)

@@ -17,9 +17,12 @@ const S kGridScale = S(1 << kGridBits);
 template <Scalar S>
 const S kGridEdge = S(kGridLimit >> kGridBits);
 
+/// What is no number counts as -infinity here and as +infinity in gridCeil: its box overlaps everything.
 template <Scalar S>
 std::int32_t gridFloor(S x) {
-  const S scaled = clamp(x, -kGridEdge<S>, kGridEdge<S>) * kGridScale<S>;
+  const S edge = kGridEdge<S>;
+  const S clamped = x >= -edge ? min(x, edge) : -edge;
+  const S scaled = clamped * kGridScale<S>;
   const int towardZero = static_cast<int>(scaled);
   return towardZero - (S(towardZero) > scaled ? 1 : 0);
 }
@@ -198,13 +201,12 @@ void BBTree<S>::findChanged(const BBTree* resting) {
   found_.clear();
   for (const IndexKey key : changed_) {
     if (!tree_.contains(key)) continue;
-    const GridBox box = tree_.box(key);
-    tree_.query(box, [&](IndexKey other) {
-      const bool othersTurn = other <= key && (changes_[other] & kMovedHere) != 0;
+    tree_.queryAround(key, [&](IndexKey other) {
+      const bool othersTurn = other < key && (changes_[other] & kMovedHere) != 0;
       if (!othersTurn) found_.push_back(packed(key, other));
     });
     if (resting == nullptr) continue;
-    resting->tree_.query(box, [&](IndexKey other) { found_.push_back(packed(key, other)); });
+    resting->tree_.query(tree_.box(key), [&](IndexKey other) { found_.push_back(packed(key, other)); });
   }
   if (resting == nullptr) return;
   for (const IndexKey key : resting->changed_) {
@@ -220,6 +222,7 @@ template <Scalar S>
 void BBTree<S>::sortFound() {
   constexpr std::size_t kFew = 48;
   if (found_.size() <= kFew) {
+    // total order: integers
     std::sort(found_.begin(), found_.end());
     return;
   }
@@ -267,6 +270,7 @@ template <Scalar S>
 void BBTree<S>::collectIn(const BB<S>& box, std::vector<IndexKey>& keys) const {
   keys.clear();
   tree_.query(gridBox(box), [&keys](IndexKey key) { keys.push_back(key); });
+  // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }
 
@@ -281,6 +285,7 @@ void BBTree<S>::collectAlong(const Vector<S>& a, const Vector<S>& b, S radius,
                                gridCeil(radius),
                                onGrid(a) && onGrid(b) && radius <= kGridEdge<S>};
   tree_.query(segment, [&keys](IndexKey key) { keys.push_back(key); });
+  // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }
 
@@ -348,7 +353,7 @@ std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
   std::vector<KeyPair> all;
   for (IndexKey key = 0; key < tree_.keyEnd(); ++key) {
     if (!tree_.contains(key)) continue;
-    tree_.query(tree_.box(key), [&all, key](IndexKey other) {
+    tree_.queryAround(key, [&all, key](IndexKey other) {
       if (key < other) all.push_back({key, other});
     });
   }
@@ -358,6 +363,7 @@ std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
     };
     this->collideStatic(*this->staticIndex(), add, &all);
   }
+  // total order: pairs of integers
   std::sort(all.begin(), all.end());
   return all;
 }

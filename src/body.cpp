@@ -97,6 +97,24 @@ void Body<S>::derive() {
 }
 
 template <Scalar S>
+bool Body<S>::wellFormed() const {
+  if (type_ > BodyType::staticBody || rotates_ > 1) return false;
+  if (!(mass_ == S(0) || (mass_ >= kMinMass<S> && mass_ <= kMaxMass<S>))) return false;
+  // What shapes of any supported size and mass can add up to, with room to spare.
+  const Scaled<S> zero{};
+  const Scaled<S> large = toScaled(kMaxMoment<S>) * toScaled(kMaxMoment<S>);
+  if (!(moment_ >= zero && moment_ <= large)) return false;
+  // A centre of mass at the end of its range, on a body at the end of the world.
+  const S far = kMaxWorldExtent<S> * S(3);
+  if (!within(centerOfMass_, kMaxWorldExtent<S>) || !within(center_, far)) return false;
+  if (!within(velocity_, kMaxSpeed<S>) || !within(angularVelocity_, kMaxAngularSpeed<S>)) return false;
+  const bool still = velocity_ == Vector<S>() && angularVelocity_ == S(0);
+  if (type_ == BodyType::staticBody && !still) return false;
+  return within(angle_, kMaxAngle<S>) && within(force_, kMaxForce<S>) && within(torque_, kMaxForce<S>) &&
+         within(velocityBias_, kMaxForce<S>) && within(angularVelocityBias_, kMaxForce<S>);
+}
+
+template <Scalar S>
 void Body<S>::setType(BodyType type) {
   require<Fault::AttachedBody>(!id_.valid(),
                                "The type of a body in a space is changed by the space: see Space::setType.");

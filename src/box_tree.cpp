@@ -15,6 +15,11 @@ constexpr GridBox kEmptyBox = {1 << 30, 1 << 30, -(1 << 30), -(1 << 30)};
           std::max(a.top, b.top)};
 }
 
+[[gnu::always_inline]] inline bool holds(const GridBox& outer, const GridBox& inner) {
+  return ((inner.left - outer.left) | (inner.bottom - outer.bottom) | (outer.right - inner.right) |
+          (outer.top - inner.top)) >= 0;
+}
+
 /// Half the perimeter. Never the area, which overflows for boxes as large as a world.
 [[gnu::always_inline]] inline std::int64_t cost(const GridBox& box) {
   return (std::int64_t{box.right} - box.left) + (std::int64_t{box.top} - box.bottom);
@@ -97,15 +102,16 @@ void BoxTree::hang(Place place, Ref ref, const GridBox& box, std::uint32_t heigh
 // The place whose sharing with `box` adds the least perimeter to the tree: a descent that stops when no
 // deeper place can be better. Ties go to the nearer centre, then to the lower subtree, which keeps even
 // a heap of equal boxes balanced.
-BoxTree::Place BoxTree::findSibling(const GridBox& box) const {
+BoxTree::Place BoxTree::findSibling(const GridBox& box, Place start) const {
   const std::int64_t own = cost(box);
-  Place place = 0;
-  Place best = 0;
-  GridBox here = nodes_[kAnchor].box[0];
+  Place place = start;
+  Place best = start;
+  GridBox here = nodes_[start >> 1].box[start & 1];
   std::int64_t grown = cost(merge(here, box));
   std::int64_t bestCost = grown;
   std::int64_t inherited = 0;
-  for (Ref ref = root(); (ref & kLeaf) == 0; ref = nodes_[place >> 1].child[place & 1]) {
+  for (Ref ref = nodes_[start >> 1].child[start & 1]; (ref & kLeaf) == 0;
+       ref = nodes_[place >> 1].child[place & 1]) {
     inherited += grown - cost(here);
     const Node& node = nodes_[ref];
     std::int64_t bound[2];
@@ -146,9 +152,13 @@ void BoxTree::insert(Key key, const GridBox& box) {
   const Ref leaf = kLeaf | key;
   if (root() == kNone) {
     hang(0, leaf, box, 0);
-    return;
+  } else {
+    insertBelow(0, leaf, box);
   }
-  const Place place = findSibling(box);
+}
+
+void BoxTree::insertBelow(Place start, Ref leaf, const GridBox& box) {
+  const Place place = findSibling(box, start);
   const Ref node = newNode();
   const Node& parent = nodes_[place >> 1];
   const Ref sibling = parent.child[place & 1];
@@ -245,9 +255,19 @@ void BoxTree::remove(Key key) {
   --count_;
 }
 
+// A leaf seldom goes far: the search for its new place begins at the lowest subtree that holds its new box.
 void BoxTree::move(Key key, const GridBox& box) {
-  remove(key);
-  insert(key, box);
+  const Place place = places_[key];
+  const Ref node = place >> 1;
+  if (node == kAnchor) {
+    nodes_[kAnchor].box[0] = box;
+    return;
+  }
+  Place start = nodes_[node].parent;
+  while (start != 0 && !holds(nodes_[start >> 1].box[start & 1], box)) start = nodes_[start >> 1].parent;
+  replaceChild(nodes_[node].parent >> 1, node, nodes_[node].child[1 - (place & 1)]);
+  freeNode(node);
+  insertBelow(start, kLeaf | key, box);
 }
 
 void BoxTree::rebuild() {
@@ -297,6 +317,7 @@ void BoxTree::splitAll(std::vector<Leaf>& leaves) {
     };
     const std::size_t middle = range.begin + (range.end - range.begin) / 2;
     const auto at = [&leaves](std::size_t i) { return leaves.begin() + static_cast<std::ptrdiff_t>(i); };
+    // total order: keys are unique, so each half is one set; the order within it is asked for nowhere
     std::nth_element(at(range.begin), at(middle), at(range.end), before);
 
     const Ref node = newNode();

@@ -85,6 +85,7 @@ void BruteForceIndex<S>::reindexQuery(QueryFunc found, void* context) {
     }
   }
   if (this->staticIndex() != nullptr) this->collideStatic(*this->staticIndex(), add, &pairs);
+  // total order: pairs of integers
   std::sort(pairs.begin(), pairs.end());
   for (const KeyPair& pair : pairs) found(context, pair.a, pair.b);
 }

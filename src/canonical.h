@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include <samestep/counted.h>
 #include <samestep/id.h>
 #include <samestep/vector.h>
 
@@ -48,27 +49,26 @@ class CanonicalWriter {
     put(value.generation);
   }
   template <class T>
-    requires std::is_enum_v<T>
-  void put(T value) {
-    put(static_cast<std::underlying_type_t<T>>(value));
-  }
-  template <class T, std::size_t kCount>
-  void put(const T (&values)[kCount]) {
-    for (const T& value : values) put(value);
+  requires std::is_enum_v<T>
+  void put(T value) { put(static_cast<std::underlying_type_t<T>>(value)); }
+  template <class T>
+  void put(const Counted<T>& field) {
+    for (std::uint32_t i = 0; i < field.count; ++i) put(field.values[i]);
   }
   /// A number with mantissa and exponent.
   template <class T>
-    requires requires(const T& t) { t.mantissa(); t.exponent(); }
+  requires requires(const T& t) {
+    t.mantissa();
+    t.exponent();
+  }
   void put(const T& value) {
     put(value.mantissa());
     put(value.exponent());
   }
   /// A record with fields of its own.
   template <class T>
-    requires requires(const T& t, CanonicalWriter& w) { T::fields(t, w); }
-  void put(const T& value) {
-    T::fields(value, *this);
-  }
+  requires requires(const T& t, CanonicalWriter& w) { T::fields(t, w); }
+  void put(const T& value) { T::fields(value, *this); }
 
  private:
   template <unsigned kSize>

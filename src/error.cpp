@@ -12,7 +12,8 @@ const char* message(Fault fault) {
     case Fault::AttachedShape:
       return "You have already added this shape to another space. You cannot add it to a second.";
     case Fault::AttachedStaticBody:
-      return "Internal Error: Changing the designated static body while the old one still had shapes attached.";
+      return "Internal Error: Changing the designated static body while the old one still had shapes "
+             "attached.";
     case Fault::AttachedStaticIndex:
       return "This static index is already associated with a dynamic index.";
     case Fault::BodyNotFound:
@@ -76,7 +77,8 @@ const char* message(Fault fault) {
     case Fault::ShapeNotFound:
       return "Cannot remove a shape that was not added to the space. (Removed twice maybe?)";
     case Fault::SpaceLocked:
-      return "This operation cannot be done safely during a call to step() or during a query. Put these calls "
+      return "This operation cannot be done safely during a call to step() or during a query. Put these "
+             "calls "
              "into a post-step callback.";
     case Fault::SpaceLockUnderflow:
       return "Internal Error: Space lock underflow.";
@@ -104,6 +106,8 @@ const char* message(Fault fault) {
       return "No callback is registered under this number.";
     case Fault::ForeignWorld:
       return "The saved state belongs to another kind of world.";
+    case Fault::MalformedBytes:
+      return "These bytes are not what they should be.";
   }
   return "Unknown fault.";
 }

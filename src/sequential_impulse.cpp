@@ -84,8 +84,6 @@ void ContactSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
   const Vector<S> n = pair.normal;
   const Vector<S> t = perp(n);
   const S surface = dot(pair.surfaceVelocity, t);
-  const SolverBody<S>& va = bodies[indexA];
-  const SolverBody<S>& vb = bodies[indexB];
   for (int i = 0; i < pair.count; ++i) {
     const Contact<S>& contact = pair.contacts[i];
     const Vector<S> armA = contact.pointA - a.worldCenter();
@@ -106,22 +104,23 @@ void ContactSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
     const S tangentMass = reciprocal(tangentK);
     row.speedA = response.massA * normalMass;
     row.speedB = response.massB * normalMass;
-    row.spinA = mulDiv(response.momentA, row.normalArmA, normalK);
-    row.spinB = mulDiv(response.momentB, row.normalArmB, normalK);
+    row.spinA = response.momentA * row.normalArmA * normalMass;
+    row.spinB = response.momentB * row.normalArmB * normalMass;
     row.tangentSpeedA = response.massA * tangentMass;
     row.tangentSpeedB = response.massB * tangentMass;
-    row.tangentSpinA = mulDiv(response.momentA, row.tangentArmA, tangentK);
-    row.tangentSpinB = mulDiv(response.momentB, row.tangentArmB, tangentK);
+    row.tangentSpinA = response.momentA * row.tangentArmA * tangentMass;
+    row.tangentSpinB = response.momentB * row.tangentArmB * tangentMass;
     row.normalScale = normalMass;
     row.tangentScale = tangentMass;
     row.friction = frictionRatio(pair.friction, tangentK, normalK);
     row.surface = surface;
 
     const S gap = dot(contact.pointB - contact.pointA, n);
-    row.bias = -(min(gap + slop, S(0)) * biasRate);
-    const Vector<S> dv = vb.velocity - va.velocity;
+    const S overlap = clamp(-(gap + slop), S(0), S(1 << 10));
+    row.bias = min(overlap * biasRate, kMaxSpeed<S>);
+    const Vector<S> dv = b.velocity() - a.velocity();
     const S approach =
-        dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, vb.angularVelocity, -row.normalArmA, va.angularVelocity);
+        dot4(n.x, dv.x, n.y, dv.y, row.normalArmB, b.angularVelocity(), -row.normalArmA, a.angularVelocity());
     row.bounce = approach * pair.elasticity;
     row.normalSum = max(sumOf(contact.normalSpeed, normalK, normalMass), S(0));
     row.tangentSum = sumOf(contact.tangentSpeed, tangentK, tangentMass);

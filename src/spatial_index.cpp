@@ -38,6 +38,7 @@ void SpatialIndex<S>::collect(const BB<S>& box, std::vector<IndexKey>& keys, Ind
     static_cast<std::vector<IndexKey>*>(to)->push_back(found);
   };
   query(object, box, add, &keys);
+  // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }
 

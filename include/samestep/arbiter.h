@@ -141,8 +141,8 @@ class Arbiter {
   /// MIS: arbiterGetContactPointSet
   ContactPointSet<S> contactPointSet() const;
   /// Replaces normal and points for this step.
-  /// @throws ImmutableNumContacts, ValueOutOfRange for a point out of the world or a normal that is no unit vector
-  /// MIS: arbiterSetContactPointSet
+  /// @throws ImmutableNumContacts, ValueOutOfRange for a point out of the world or a normal that is no unit
+  /// vector MIS: arbiterSetContactPointSet
   void setContactPointSet(const ContactPointSet<S>& set);
 
   /// Whether the shapes began to touch in this step. MIS: arbiterIsFirstContact

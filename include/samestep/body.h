@@ -212,6 +212,8 @@ class Body {
   }
   /// Computes what follows from the fields.
   void derive();
+  /// Whether the record could have been made by the functions of this library: for what was read from outside.
+  bool wellFormed() const;
 
  private:
   friend class Space<S>;

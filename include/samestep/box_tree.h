@@ -72,7 +72,7 @@ class BoxTree {
   void insert(Key key, const GridBox& box);
   /// O(height). @pre contains(key)
   void remove(Key key);
-  /// Remove and insert. @pre contains(key)
+  /// As remove and insert, but cheaper for a small move. @pre contains(key)
   void move(Key key, const GridBox& box);
   void clear();
 
@@ -84,21 +84,24 @@ class BoxTree {
   /// @throws InsufficientBufferSize if the tree is higher than it can be
   template <class Area, class Visit>
   void query(const Area& area, Visit&& visit) const {
-    Ref stack[kStackSize];
-    std::uint32_t depth = 1;
-    stack[0] = kAnchor;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      for (int side = 0; side < 2; ++side) {
-        if (!overlaps(area, node.box[side])) continue;
-        const Ref child = node.child[side];
-        if ((child & kLeaf) != 0) {
-          visit(child & ~kLeaf);
+    search(kAnchor, area, visit);
+  }
+  /// Calls visit(other) for every other leaf whose box overlaps that of `key`; otherwise as query, and
+  /// faster: from the leaf upwards only the boxes beside the path are compared. @pre contains(key)
+  template <class Visit>
+  void queryAround(Key key, Visit&& visit) const {
+    const GridBox area = box(key);
+    for (Place place = places_[key]; place >> 1 != kAnchor;) {
+      const Node& node = nodes_[place >> 1];
+      const Place beside = 1 - (place & 1);
+      if (overlaps(area, node.box[beside])) {
+        if ((node.child[beside] & kLeaf) != 0) {
+          visit(node.child[beside] & ~kLeaf);
         } else {
-          require<Fault::InsufficientBufferSize>(depth < kStackSize);
-          stack[depth++] = child;
+          search(node.child[beside], area, visit);
         }
       }
+      place = node.parent;
     }
   }
 
@@ -136,10 +139,31 @@ class BoxTree {
 
   static Node emptyNode();
 
+  template <class Area, class Visit>
+  void search(Ref start, const Area& area, Visit& visit) const {
+    Ref stack[kStackSize];
+    std::uint32_t depth = 1;
+    stack[0] = start;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      for (int side = 0; side < 2; ++side) {
+        if (!overlaps(area, node.box[side])) continue;
+        const Ref child = node.child[side];
+        if ((child & kLeaf) != 0) {
+          visit(child & ~kLeaf);
+        } else {
+          require<Fault::InsufficientBufferSize>(depth < kStackSize);
+          stack[depth++] = child;
+        }
+      }
+    }
+  }
+
   Ref newNode();
   void freeNode(Ref node);
   void hang(Place place, Ref ref, const GridBox& box, std::uint32_t height);
-  Place findSibling(const GridBox& box) const;
+  void insertBelow(Place start, Ref leaf, const GridBox& box);
+  Place findSibling(const GridBox& box, Place start) const;
   void rotate(Ref node, int side);
   void refit(Ref node);
   GridBox boxOf(Ref ref) const;

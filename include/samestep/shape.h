@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include <samestep/bb.h>
 #include <samestep/control.h>
+#include <samestep/counted.h>
 #include <samestep/id.h>
 #include <samestep/transform.h>
 

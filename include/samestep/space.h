@@ -18,9 +18,6 @@
 
 namespace samestep {
 
-/// Changes whenever any result of a step changes. Every snapshot and recording carries it.
-inline constexpr std::uint32_t kSimulationRevision = 1;
-
 /// What the MIS calls the state variables of a Space that a user sets.
 template <Scalar S>
 struct Settings {

@@ -65,9 +65,12 @@ inline constexpr Transform<S> operator*(const Transform<S>& outer, const Transfo
 template <Scalar S>
 inline constexpr Transform<S> inverse(const Transform<S>& t) {
   const S inv = reciprocal(cross(t.a, t.d, t.c, t.b));
-  return {t.d * inv,  -(t.b * inv),
-          -(t.c * inv), t.a * inv,
-          cross(t.c, t.ty, t.tx, t.d) * inv, cross(t.tx, t.b, t.a, t.ty) * inv};
+  return {t.d * inv,
+          -(t.b * inv),
+          -(t.c * inv),
+          t.a * inv,
+          cross(t.c, t.ty, t.tx, t.d) * inv,
+          cross(t.tx, t.b, t.a, t.ty) * inv};
 }
 
 /// The inverse of a rotation and translation. MIS: transformRigidInverse

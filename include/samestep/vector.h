@@ -31,7 +31,9 @@ struct Vector {
   /// MIS: vectNeg
   [[gnu::always_inline]] friend constexpr Vector operator-(const Vector& v) { return {-v.x, -v.y}; }
   /// MIS: vectMult
-  [[gnu::always_inline]] friend constexpr Vector operator*(const Vector& v, S s) { return {v.x * s, v.y * s}; }
+  [[gnu::always_inline]] friend constexpr Vector operator*(const Vector& v, S s) {
+    return {v.x * s, v.y * s};
+  }
   [[gnu::always_inline]] friend constexpr Vector operator*(S s, const Vector& v) { return v * s; }
 
   constexpr Vector& operator+=(const Vector& v) { return *this = *this + v; }

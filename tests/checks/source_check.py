@@ -191,7 +191,7 @@ class Check:
             if path.as_posix() in rule.exempt:
                 continue
             for number, line in enumerate(code):
-                if rule.pattern.search(line) and not permitted(rule.marker, comments, number):
+                if rule.pattern.search(line) and not permitted(rule.marker, code, comments, number):
                     self.report(path, number, rule.name, rule.message)
 
     def check_header(self, path, code, comments):
@@ -206,7 +206,7 @@ class Check:
                             f"<{heavy.group(1)}> in a public header makes every user compile it; move it to the "
                             "source, or take a template parameter, span or plain function pointer")
         for number, member in data_members(code):
-            if re.search(rf"\b(?:{UNSIZED})\b", member) and not permitted("not state:", comments, number):
+            if re.search(rf"\b(?:{UNSIZED})\b", member) and not permitted("not state:", code, comments, number):
                 self.report(path, number, "unsized-member",
                             "its width differs between platforms; use std::int32_t, std::uint64_t, ..., or say "
                             "'// not state: ...' why it is never saved or hashed")
@@ -274,12 +274,18 @@ class Check:
                 self.report(path, number, "machine-path", "a path of one machine; make it relative, or a mktemp")
 
 
-def permitted(marker, comments, number):
-    """Whether a comment with the marker and a reason stands on this line or the one before."""
+def permitted(marker, code, comments, number):
+    """Whether a comment with the marker and a reason stands on this line or right above it."""
     if marker is None:
         return False
-    near = comments[number] if number == 0 else comments[number - 1] + " " + comments[number]
-    return re.search(re.escape(marker) + r"\s*\w", near) is not None
+    near = [comments[number]]
+    above = number - 1
+    while above >= 0 and comments[above]:
+        near.insert(0, comments[above])
+        if code[above].strip():
+            break
+        above -= 1
+    return re.search(re.escape(marker) + r"\s*\w", " ".join(near)) is not None
 
 
 def data_members(code):

@@ -44,6 +44,8 @@ SNIPPETS = [
     ("sqrt", SOURCE, "double y = std::sqrt(x);\n", "S y = sqrt(x) + samestep::sqrt(x);\n"),
     ("sort", SOURCE, "std::sort(a, b);\n", "// total order: ids are unique\nstd::sort(a, b);\n"),
     ("sort", SOURCE, "std::ranges::sort(a);\n", "std::ranges::sort(a);  // total order: ids are unique\n"),
+    ("sort", SOURCE, "// total order: ids\nint c;\nstd::sort(a, b);\n",
+     "// total order: ids\n// are unique\nstd::sort(a, b);\n"),
     ("sort", SOURCE, "std::sort(a, b);  // total order:\n", "std::stable_sort(a, b);\n"),
     ("sort", SOURCE, "std::priority_queue<int> q;\n", "std::vector<int> q;\n"),
     ("clock", SOURCE, "auto t = std::chrono::steady_clock::now();\n", "auto t = tick;\n"),

@@ -4,6 +4,7 @@
 #include <chipmunk/chipmunk.h>
 #include <chipmunk/chipmunk_structs.h>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -57,26 +58,33 @@ Shape<S> build(const ShapeRecipe& recipe) {
   return {};
 }
 
+inline double far(const Vector<double>& a, const Vector<double>& b) {
+  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
+}
+
 inline cpVect toChipmunk(const Vector<double>& v) { return cpv(v.x, v.y); }
 inline Vector<double> fromChipmunk(cpVect v) { return {v.x, v.y}; }
+
+/// A shape of Chipmunk on a body, to be freed by the caller.
+inline cpShape* newChipmunkShape(cpBody* body, const ShapeRecipe& recipe) {
+  std::vector<cpVect> points;
+  for (const Vector<double>& v : recipe.points) points.push_back(toChipmunk(v));
+  switch (recipe.type) {
+    case ShapeType::circle:
+      return cpCircleShapeNew(body, recipe.radius, points[0]);
+    case ShapeType::segment:
+      return cpSegmentShapeNew(body, points[0], points[1], recipe.radius);
+    case ShapeType::poly:
+      return cpPolyShapeNewRaw(body, static_cast<int>(points.size()), points.data(), recipe.radius);
+  }
+  return nullptr;
+}
 
 /// A shape of Chipmunk with a body of its own, posed by the very numbers of a Transform.
 class ChipmunkShape {
  public:
-  ChipmunkShape(const ShapeRecipe& recipe, const Transform<double>& pose) : body_(cpBodyNew(1, 1)) {
-    std::vector<cpVect> points;
-    for (const Vector<double>& v : recipe.points) points.push_back(toChipmunk(v));
-    switch (recipe.type) {
-      case ShapeType::circle:
-        shape_ = cpCircleShapeNew(body_, recipe.radius, points[0]);
-        break;
-      case ShapeType::segment:
-        shape_ = cpSegmentShapeNew(body_, points[0], points[1], recipe.radius);
-        break;
-      case ShapeType::poly:
-        shape_ = cpPolyShapeNewRaw(body_, static_cast<int>(points.size()), points.data(), recipe.radius);
-        break;
-    }
+  ChipmunkShape(const ShapeRecipe& recipe, const Transform<double>& pose)
+      : body_(cpBodyNew(1, 1)), shape_(newChipmunkShape(body_, recipe)) {
     move(pose);
   }
   ChipmunkShape(const ChipmunkShape&) = delete;
@@ -94,7 +102,7 @@ class ChipmunkShape {
 
  private:
   cpBody* body_;
-  cpShape* shape_ = nullptr;
+  cpShape* shape_;
 };
 
 /// Random numbers with 20 fraction bits: exact in every scalar.
@@ -131,17 +139,12 @@ class RecipeSource {
   Transform<double> pose(double reach) {
     const SinCos<double> turn = sincos(number(-4, 4));
     const Vector<double> place = point(reach);
-    // Rounded, so that every scalar turns by the very same matrix.
-    const double c = exact32(turn.cos), s = exact32(turn.sin);
-    return {c, s, -s, c, place.x, place.y};
+    return Transform<double>::rigid(place, Vector<double>(turn.cos, turn.sin));
   }
 
  private:
   static double exact(double x) {
     return static_cast<double>(static_cast<std::int64_t>(x * 0x1p20)) * 0x1p-20;
-  }
-  static double exact32(double x) {
-    return static_cast<double>(static_cast<std::int64_t>(x * 0x1p32)) * 0x1p-32;
   }
 
   std::vector<Vector<double>> hull(double size) {

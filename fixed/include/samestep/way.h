@@ -7,10 +7,23 @@
 
 #include "samestep/halves.h"
 
+#if defined(__SSE2__) && defined(__x86_64__)
+#include <emmintrin.h>
+#endif
+
 /// The ways a machine may compute what the exact result defines. All of them give the same bits; every way
 /// this compiler can build is compiled and compared by the tests. This is the only file that asks which
 /// compiler or processor it meets.
 namespace samestep::way {
+
+/// whole + high:low / 2^kBits to nearest, ties to even, modulo 2^64.
+template <int kBits>
+constexpr std::int64_t roundedShift(std::uint64_t high, std::uint64_t low, std::uint64_t whole) {
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+  const std::uint64_t floor = (high << (64 - kBits) | low >> kBits) + whole;
+  // Less than half of a unit is added, and a little more to an odd floor, so that a tie carries.
+  return static_cast<std::int64_t>(floor + (((low & kMask) + (kMask >> 1) + (floor & 1)) >> kBits));
+}
 
 /// 128-bit words in two halves: needs nothing but 64-bit integers.
 struct PortableWords {
@@ -20,6 +33,10 @@ struct PortableWords {
   static constexpr std::uint64_t high(U128 a) { return a.high; }
   static constexpr std::uint64_t low(U128 a) { return a.low; }
   static constexpr U128 multiply(std::uint64_t a, std::uint64_t b) { return multiplyHalves(a, b); }
+  /// a b / 2^33 for b at most 2^32: half the work of a full product.
+  static constexpr std::uint64_t multiplyShort(std::uint64_t a, std::uint64_t b) {
+    return ((a >> 32) * b + ((a & 0xffffffff) * b >> 32)) >> 1;
+  }
   static constexpr U128 multiplySigned(std::int64_t a, std::int64_t b) {
     Halves product = multiplyHalves(static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(b));
     product.high -= (static_cast<std::uint64_t>(a >> 63) & static_cast<std::uint64_t>(b)) +
@@ -28,7 +45,7 @@ struct PortableWords {
   }
 
   /// The sum of products of Q32.32 numbers, modulo 2^64 units, with its fraction apart. Keeps only the bits
-  /// that reach the result: four 64-bit products each, no carries.
+  /// that reach the result: three 64-bit products each, no carries.
   class Sum32 {
    public:
     constexpr void plus(std::int64_t a, std::int64_t b) {
@@ -46,8 +63,8 @@ struct PortableWords {
     constexpr std::int64_t rounded() const {
       const std::uint64_t floor =
           whole_ + static_cast<std::uint64_t>(static_cast<std::int64_t>(fraction_) >> 32);
-      const std::uint64_t roundUp = ((fraction_ & kMask) + (kMask >> 1) + (floor & 1)) >> 32;
-      return static_cast<std::int64_t>(floor + roundUp);
+      const auto rest = static_cast<std::uint32_t>(fraction_) | static_cast<std::uint32_t>(floor & 1);
+      return static_cast<std::int64_t>(floor + (rest > 0x80000000 ? 1 : 0));
     }
 
    private:
@@ -55,11 +72,12 @@ struct PortableWords {
     struct Parts {
       std::uint64_t whole, fraction;
     };
+    /// a b 2^-32 is a's upper half times b, and its lower half times both halves of b.
     static constexpr Parts product(std::int64_t a, std::int64_t b) {
       const auto aHigh = static_cast<std::uint64_t>(a >> 32), aLow = static_cast<std::uint64_t>(a) & kMask;
       const auto bHigh = static_cast<std::uint64_t>(b >> 32), bLow = static_cast<std::uint64_t>(b) & kMask;
       const std::uint64_t lowest = aLow * bLow;
-      return {(aHigh * bHigh << 32) + aHigh * bLow + aLow * bHigh + (lowest >> 32), lowest & kMask};
+      return {aHigh * static_cast<std::uint64_t>(b) + aLow * bHigh + (lowest >> 32), lowest & kMask};
     }
     std::uint64_t whole_ = 0;
     std::uint64_t fraction_ = 0;
@@ -72,23 +90,21 @@ class Sum {
  public:
   constexpr void plus(std::int64_t a, std::int64_t b) { sum_ = sum_ + Words::multiplySigned(a, b); }
   constexpr void minus(std::int64_t a, std::int64_t b) { sum_ = sum_ - Words::multiplySigned(a, b); }
-  constexpr void plus(std::int64_t c) {
-    sum_ = sum_ + (Words::make(static_cast<std::uint64_t>(c >> 63), static_cast<std::uint64_t>(c)) << kBits);
-  }
+  constexpr void plus(std::int64_t c) { whole_ += static_cast<std::uint64_t>(c); }
   /// To nearest, ties to even.
   constexpr std::int64_t rounded() const {
     if constexpr (kBits == 0) {
-      return static_cast<std::int64_t>(Words::low(sum_));
+      return static_cast<std::int64_t>(Words::low(sum_) + whole_);
+    } else if constexpr (kBits == 32) {
+      return Words::rounded32(sum_, whole_);
     } else {
-      constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
-      const std::uint64_t floor = Words::low(sum_ >> kBits);
-      const std::uint64_t roundUp = ((Words::low(sum_) & kMask) + (kMask >> 1) + (floor & 1)) >> kBits;
-      return static_cast<std::int64_t>(floor + roundUp);
+      return roundedShift<kBits>(Words::high(sum_), Words::low(sum_), whole_);
     }
   }
 
  private:
   typename Words::U128 sum_ = {};
+  std::uint64_t whole_ = 0;
 };
 
 template <>
@@ -99,88 +115,210 @@ struct DivideByHalves {
   static constexpr QuotientRemainder divide(std::uint64_t high, std::uint64_t low, std::uint64_t divisor) {
     return divideHalves({high, low}, divisor);
   }
+  /// floor(n 2^48 / d), n < d / 4, d < 2^62.
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return divide(n >> 16, n << 48, d).quotient;
+  }
 };
 
-/// 128 by 64 bits by two estimates in double, each made exact by integers: for processors that have a fast
+/// x to the nearest double, or near it.
+inline double nearDouble(std::int64_t x) {
+#if defined(__SSE2__) && defined(__x86_64__)
+  // The plain conversion keeps the upper half of its register, and so waits for whatever was there before.
+  __m128d result = _mm_cvtsi64_sd(_mm_setzero_pd(), x);
+#if defined(__GNUC__)
+  asm("" : "+x"(result));  // clang would make it the plain conversion again
+#endif
+  return _mm_cvtsd_f64(result);
+#else
+  return static_cast<double>(x);
+#endif
+}
+
+/// Quotients of numbers from an estimate in double, made exact by integers: for processors that have a fast
 /// floating divide but none of 128 by 64 bits. Any rounding mode and contraction gives the same quotient,
-/// because the estimates are only required to be near.
-struct DivideByDouble {
-  static constexpr QuotientRemainder divide(std::uint64_t high, std::uint64_t low, std::uint64_t divisor) {
-    // Scaled so that the divisor has its top bit: the quotient of the upper parts then has 64 bits at most.
-    const int shift = std::countl_zero(divisor);
-    const std::uint64_t d = divisor << shift;
-    const Halves n = Halves{high, low} << shift;
-    const double inverse = 18446744073709551616.0 / static_cast<double>(d);
-    // The first estimate is right to about 2^-50 of the quotient; rounded down it leaves a remainder that
-    // the second one brings to within one unit.
-    const std::uint64_t first = estimate(n.high, n.low, inverse);
-    Halves rest = n - PortableWords::multiply(first, d);
-    std::uint64_t quotient = first;
-    while (static_cast<std::int64_t>(rest.high) < 0) {
-      const std::uint64_t back = estimate(~rest.high, ~rest.low, inverse) + 1;
-      quotient -= back;
-      rest = rest + PortableWords::multiply(back, d);
-    }
-    while (rest.high != 0 || rest.low >= d) {
-      const std::uint64_t more = estimate(rest.high, rest.low, inverse);
-      const std::uint64_t step = more == 0 ? 1 : more;
-      quotient += step;
-      rest = rest - PortableWords::multiply(step, d);
-      while (static_cast<std::int64_t>(rest.high) < 0) {
-        --quotient;
-        rest = rest + Halves{0, d};
-      }
-    }
-    return {quotient, rest.low >> shift};
+/// because the estimate is only required to be near.
+struct DivideByDouble : DivideByHalves {
+  static constexpr double kMaxQuotient = 1125899906842624.0;  // 2^50: the estimate is within one unit
+  static constexpr std::uint64_t kMaxDivisor = std::uint64_t{1} << 61;  // twice the remainder fits
+
+  /// The quotient of a numerator with these low 64 bits to nearest, ties to even, of magnitudes.
+  /// @pre d < kMaxDivisor, estimate < kMaxQuotient
+  static constexpr std::uint64_t rounded(double estimate, std::uint64_t low, std::uint64_t d) {
+    // To the nearest of the estimate, so that the remainder's place says all: within 3/2 of d either way.
+    const auto quotient = static_cast<std::uint64_t>(static_cast<std::int64_t>(estimate + 0.5));
+    // The remainder is small, so that its low 64 bits are all of it.
+    const auto twice = static_cast<std::int64_t>(2 * (low - quotient * d));
+    const auto divisor = static_cast<std::int64_t>(d);
+    const auto odd = static_cast<std::int64_t>(quotient & 1);
+    return quotient + (twice + odd > divisor ? 1u : 0u) - (twice - odd < -divisor ? 1u : 0u);
   }
 
- private:
-  static constexpr std::uint64_t estimate(std::uint64_t high, std::uint64_t low, double inverse) {
-    const double value =
-        (static_cast<double>(high) + static_cast<double>(low) * (1.0 / 18446744073709551616.0)) * inverse;
-    return value >= 18446744073709549568.0 ? ~std::uint64_t{0} : static_cast<std::uint64_t>(value);
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    if (std::is_constant_evaluated()) return DivideByHalves::fraction48(n, d);
+    const auto divisor = static_cast<std::int64_t>(d);
+    const auto quotient = static_cast<std::int64_t>(nearDouble(static_cast<std::int64_t>(n)) *
+                                                    281474976710656.0 / nearDouble(divisor));
+    const auto rest = static_cast<std::int64_t>((n << 48) - static_cast<std::uint64_t>(quotient) * d);
+    return static_cast<std::uint64_t>(quotient + (rest >= divisor ? 1 : 0) - (rest < 0 ? 1 : 0));
   }
+};
+
+/// The distance from a rounding boundary below which an estimated component of a unit vector is decided
+/// exactly, in units of 2^-kGuardBits of the last place. The estimates are off by less than 8.
+inline constexpr int kGuardBits = 20;
+inline constexpr std::uint64_t kGuardMargin = 64;
+
+/// Estimates of |x| / length and |y| / length with kGuardBits more bits than the result.
+struct UnitEstimate {
+  std::uint64_t x, y;
 };
 
 /// Square roots without floating point.
 struct RootByInteger {
-  /// The largest integer whose square is at most high:low. Newton's iteration from above.
+  /// The largest integer whose square is at most high:low, by halving the problem (P. Zimmermann, Karatsuba
+  /// Square Root, 1999).
   static constexpr std::uint64_t floorRoot(std::uint64_t high, std::uint64_t low) {
     if (high == 0 && low == 0) return 0;
-    const int bits = high != 0 ? 128 - std::countl_zero(high) : 64 - std::countl_zero(low);
-    const int half = (bits + 1) / 2;
-    std::uint64_t root = half == 64 ? ~std::uint64_t{0} : std::uint64_t{1} << half;
-    while (true) {
-      if (high >= root) return root;  // only where the root is 2^64 - 1
-      const std::uint64_t quotient = divideHalves({high, low}, root).quotient;
-      if (quotient >= root) return root;
-      root = root / 2 + quotient / 2 + (root & quotient & 1);
+    const int zeros = high != 0 ? std::countl_zero(high) : 64 + std::countl_zero(low);
+    const Halves n = Halves{high, low} << (zeros & ~1);
+    const Root upper = root64(n.high);
+    // One bit less than the dividend's 65 makes it fit.
+    const std::uint64_t dividend = upper.rest << 31 | n.low >> 33;
+    const std::uint64_t quotient = dividend / upper.root;
+    const std::uint64_t left = dividend % upper.root << 1 | (n.low >> 32 & 1);
+    std::uint64_t root = (upper.root << 32) + quotient;
+    const Halves rest =
+        Halves{left >> 32, left << 32 | (n.low & 0xffffffff)} - multiplyHalves(quotient, quotient);
+    if (rest.high >> 63 != 0) --root;
+    return root >> zeros / 2;
+  }
+
+  /// The root of high:low to nearest; never a tie.
+  static constexpr std::uint64_t roundedRoot(std::uint64_t high, std::uint64_t low) {
+    const std::uint64_t root = floorRoot(high, low);
+    const Halves rest = Halves{high, low} - multiplyHalves(root, root);
+    return root + (rest > Halves{0, root} ? 1 : 0);
+  }
+
+  /// sqrt(x 2^kBits) to nearest, x > 0.
+  template <int kBits>
+  static constexpr std::uint64_t squareRoot(std::int64_t x) {
+    const Halves n = Halves{0, static_cast<std::uint64_t>(x)} << kBits;
+    return roundedRoot(n.high, n.low);
+  }
+
+  /// sqrt(x^2 + y^2) to nearest, not both 0.
+  template <class Words>
+  static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
+    const auto square = Words::multiplySigned(x, x) + Words::multiplySigned(y, y);
+    return roundedRoot(Words::high(square), Words::low(square));
+  }
+
+  /// @pre not both 0
+  template <int kBits>
+  static constexpr UnitEstimate unit(std::int64_t x, std::int64_t y) {
+    // At 62 bits the root of the sum of squares has 63, and its error does not count.
+    const auto size = [](std::int64_t v) {
+      return v < 0 ? 0 - static_cast<std::uint64_t>(v) : static_cast<std::uint64_t>(v);
+    };
+    const int zeros = std::countl_zero(size(x) | size(y));
+    const std::uint64_t xScaled = size(x) << zeros >> 2, yScaled = size(y) << zeros >> 2;
+    const Halves square = multiplyHalves(xScaled, xScaled) + multiplyHalves(yScaled, yScaled);
+    const std::uint64_t root = floorRoot(square.high, square.low);
+    const auto component = [&](std::uint64_t v) {
+      const Halves scaled = Halves{0, v} << (kBits + kGuardBits);
+      return v >= root ? std::uint64_t{1} << (kBits + kGuardBits) : divideHalves(scaled, root).quotient;
+    };
+    return {component(xScaled), component(yScaled)};
+  }
+
+ private:
+  struct Root {
+    std::uint64_t root, rest;
+  };
+  /// @pre n >= 2^30
+  static constexpr Root root32(std::uint64_t n) {
+    std::uint64_t root = 0, rest = 0;
+    for (int shift = 30; shift >= 0; shift -= 2) {
+      rest = rest << 2 | (n >> shift & 3);
+      const std::uint64_t trial = root << 2 | 1;
+      root <<= 1;
+      if (rest >= trial) {
+        rest -= trial;
+        root |= 1;
+      }
     }
+    return {root, rest};
+  }
+  /// @pre n >= 2^62
+  static constexpr Root root64(std::uint64_t n) {
+    const Root upper = root32(n >> 32);
+    const std::uint64_t dividend = upper.rest << 16 | (n >> 16 & 0xffff);
+    const std::uint64_t quotient = dividend / (2 * upper.root), left = dividend % (2 * upper.root);
+    std::uint64_t root = (upper.root << 16) + quotient;
+    auto rest =
+        static_cast<std::int64_t>(left << 16 | (n & 0xffff)) - static_cast<std::int64_t>(quotient * quotient);
+    if (rest < 0) {
+      rest += static_cast<std::int64_t>(2 * root - 1);
+      --root;
+    }
+    return {root, static_cast<std::uint64_t>(rest)};
   }
 };
 
-/// Square roots from a double estimate, made exact by integers.
+/// Square roots from a double estimate, made exact by integers. The estimate is only required to be within
+/// a quarter of a unit, which leaves a factor of two and more for rounding modes and contraction.
 struct RootByDouble {
-  static constexpr std::uint64_t floorRoot(std::uint64_t high, std::uint64_t low) {
-    if (std::is_constant_evaluated()) return RootByInteger::floorRoot(high, low);
-    const double value = static_cast<double>(high) * 18446744073709551616.0 + static_cast<double>(low);
-    const double estimate = __builtin_sqrt(value);
-    std::uint64_t root =
-        estimate >= 18446744073709549568.0 ? ~std::uint64_t{0} : static_cast<std::uint64_t>(estimate);
-    if (high >> 40 != 0) {
-      // More bits than a double holds: one step of Newton's iteration on the exact remainder.
-      const Halves rest = Halves{high, low} - multiplyHalves(root, root);
-      const bool below = static_cast<std::int64_t>(rest.high) < 0;
-      const Halves size = below ? Halves{} - rest : rest;
-      const double step =
-          (static_cast<double>(size.high) * 18446744073709551616.0 + static_cast<double>(size.low)) /
-          (2.0 * static_cast<double>(root));
-      const auto change = static_cast<std::uint64_t>(step);
-      root = below ? root - change : root + change < root ? ~std::uint64_t{0} : root + change;
+  /// sqrt(x 2^kBits) to nearest, x > 0.
+  template <int kBits>
+  static constexpr std::uint64_t squareRoot(std::int64_t x) {
+    if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::squareRoot<kBits>(x);
+    constexpr double kScale = static_cast<double>(std::uint64_t{1} << kBits);
+    const auto root = static_cast<std::int64_t>(__builtin_sqrt(nearDouble(x) * kScale) + 0.5);
+    return corrected(root, (static_cast<std::uint64_t>(x) << kBits));
+  }
+
+  /// sqrt(x^2 + y^2) to nearest, not both 0.
+  template <class Words>
+  static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
+    if (!std::is_constant_evaluated()) {
+      const double xd = nearDouble(x), yd = nearDouble(y);
+      const double estimate = __builtin_sqrt(xd * xd + yd * yd) + 0.5;
+      if (estimate < 281474976710656.0) [[likely]] {  // 2^48
+        const auto xBits = static_cast<std::uint64_t>(x), yBits = static_cast<std::uint64_t>(y);
+        return corrected(static_cast<std::int64_t>(estimate), xBits * xBits + yBits * yBits);
+      }
     }
-    while (multiplyHalves(root, root) > Halves{high, low}) --root;
-    while (root != ~std::uint64_t{0} && multiplyHalves(root + 1, root + 1) <= Halves{high, low}) ++root;
-    return root;
+    return farLength<Words>(x, y);
+  }
+
+  /// @pre not both 0
+  template <int kBits>
+  static constexpr UnitEstimate unit(std::int64_t x, std::int64_t y) {
+    if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::unit<kBits>(x, y);
+    constexpr double kScale = static_cast<double>(std::uint64_t{1} << (kBits + kGuardBits));
+    const double xd = nearDouble(x), yd = nearDouble(y);
+    const double inverse = kScale / __builtin_sqrt(xd * xd + yd * yd);
+    const auto component = [&](double v) {
+      const auto scaled = static_cast<std::int64_t>(v * inverse);
+      return static_cast<std::uint64_t>(scaled < 0 ? -scaled : scaled);
+    };
+    return {component(xd), component(yd)};
+  }
+
+ private:
+  /// Beyond what the estimate can do; kept out of the way of the usual case.
+  template <class Words>
+  [[gnu::noinline, gnu::cold]] static constexpr std::uint64_t farLength(std::int64_t x, std::int64_t y) {
+    return RootByInteger::length<Words>(x, y);
+  }
+
+  /// The integer nearest to sqrt(n) from one at most one off, below 2^48, and the low half of n.
+  static constexpr std::uint64_t corrected(std::int64_t root, std::uint64_t low) {
+    const auto rest =
+        static_cast<std::int64_t>(low - static_cast<std::uint64_t>(root) * static_cast<std::uint64_t>(root));
+    return static_cast<std::uint64_t>(root + (rest > root ? 1 : 0) - (rest <= -root && root > 0 ? 1 : 0));
   }
 };
 
@@ -196,8 +334,18 @@ struct NativeWords {
   static constexpr std::uint64_t high(U128 a) { return static_cast<std::uint64_t>(a >> 64); }
   static constexpr std::uint64_t low(U128 a) { return static_cast<std::uint64_t>(a); }
   static constexpr U128 multiply(std::uint64_t a, std::uint64_t b) { return U128{a} * b; }
+  static constexpr std::uint64_t multiplyShort(std::uint64_t a, std::uint64_t b) {
+    return high(multiply(a, b << 31));
+  }
   static constexpr U128 multiplySigned(std::int64_t a, std::int64_t b) {
+#if !defined(__clang__)
+    // gcc 12 otherwise stores the sign-extended factor to the stack, though nothing ever reads it.
+    if (!std::is_constant_evaluated()) asm("" : "+r"(b));
+#endif
     return static_cast<U128>(NativeSigned128{a} * b);
+  }
+  static constexpr std::int64_t rounded32(U128 sum, std::uint64_t whole) {
+    return roundedShift<32>(high(sum), low(sum), whole);
   }
 };
 
@@ -208,6 +356,9 @@ struct DivideByNative {
     const auto quotient = static_cast<std::uint64_t>(numerator / divisor);
     return {quotient, low - quotient * divisor};
   }
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return static_cast<std::uint64_t>((Native128{n} << 48) / d);
+  }
 };
 inline constexpr bool kHasNativeWords = true;
 #else
@@ -217,6 +368,22 @@ inline constexpr bool kHasNativeWords = false;
 #endif
 
 #if defined(__x86_64__) && defined(__GNUC__)
+/// Native words with the rounding shift in four instructions.
+struct HardwareWords : NativeWords {
+  static constexpr std::int64_t rounded32(U128 sum, std::uint64_t whole) {
+    if (std::is_constant_evaluated()) return NativeWords::rounded32(sum, whole);
+    std::uint64_t upper = high(sum), lower = low(sum);
+    asm("btq $32, %[parity]\n\t"
+        "adcq $0x7fffffff, %[lower]\n\t"
+        "adcq $0, %[upper]\n\t"
+        "shrdq $32, %[upper], %[lower]"
+        : [lower] "+r"(lower), [upper] "+r"(upper)
+        : [parity] "r"(lower + (whole << 32))
+        : "cc");
+    return static_cast<std::int64_t>(lower + whole);
+  }
+};
+
 /// The processor's division of 128 by 64 bits.
 struct DivideByHardware {
   static constexpr QuotientRemainder divide(std::uint64_t high, std::uint64_t low, std::uint64_t divisor) {
@@ -228,9 +395,13 @@ struct DivideByHardware {
         : "cc");
     return result;
   }
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return divide(n >> 16, n << 48, d).quotient;
+  }
 };
 inline constexpr bool kHasHardwareDivide = true;
 #else
+using HardwareWords = NativeWords;
 using DivideByHardware = DivideByHalves;
 inline constexpr bool kHasHardwareDivide = false;
 #endif
@@ -243,17 +414,27 @@ struct Way {
   using Root = RootWay;
 };
 
+/// Without a 128-bit integer, but with floating point.
+using Portable = Way<PortableWords, DivideByDouble, RootByDouble>;
 /// Nothing but 64-bit integers.
-using Portable = Way<PortableWords, DivideByHalves, RootByInteger>;
+using IntegerOnly = Way<PortableWords, DivideByHalves, RootByInteger>;
+/// The compiler's 128-bit integers throughout.
+using Native = Way<NativeWords, DivideByNative, RootByDouble>;
+/// The processor's own division.
+using Hardware = Way<HardwareWords, DivideByHardware, RootByDouble>;
 
-#if defined(SAMESTEP_FIXED_PORTABLE)
+#if defined(SAMESTEP_FIXED_INTEGER_ONLY)
+using Chosen = IntegerOnly;
+#elif defined(SAMESTEP_FIXED_PORTABLE)
 using Chosen = Portable;
 #elif defined(__x86_64__) && defined(__GNUC__)
-using Chosen = Way<NativeWords, DivideByHardware, RootByDouble>;
+using Chosen = Hardware;
 #elif defined(__SIZEOF_INT128__)
 using Chosen = Way<NativeWords, DivideByDouble, RootByDouble>;
+#elif defined(__SSE2__) || defined(__wasm__) || (defined(__ARM_FP) && (__ARM_FP & 8) != 0)
+using Chosen = Portable;
 #else
-using Chosen = Way<PortableWords, DivideByHalves, RootByInteger>;
+using Chosen = IntegerOnly;
 #endif
 
 }  // namespace samestep::way

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+
+// Replaces operator new and delete of the whole program: for one source of a test program only.
+
+namespace samestep {
+
+/// Calls of operator new since the program began.
+inline std::uint64_t allocationCount = 0;
+
+}  // namespace samestep
+
+// Not inlined, or gcc takes malloc and operator delete for a mismatched couple.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++samestep::allocationCount;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
