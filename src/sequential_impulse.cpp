@@ -152,8 +152,9 @@ template <Scalar S>
 void ContactSolver<S>::warmStart(ContactRow<S>& row, S dtCoefficient) {
   SolverBody<S>& a = bodies[row.bodyA];
   SolverBody<S>& b = bodies[row.bodyB];
-  answer(a.velocity, a.angularVelocity, b.velocity, b.angularVelocity, row, row.normalSum * dtCoefficient,
-         row.tangentSum * dtCoefficient);
+  const S normal = min(row.normalSum * dtCoefficient, kMaxSum<S>);
+  const S tangent = clamp(row.tangentSum * dtCoefficient, -kMaxSum<S>, kMaxSum<S>);
+  answer(a.velocity, a.angularVelocity, b.velocity, b.angularVelocity, row, normal, tangent);
 }
 
 template <Scalar S>
