@@ -40,10 +40,10 @@ Vector<S> pointAlong(const SupportEdge<S>& edge, S part, S whole) {
 }
 
 /// Projects the ends of two facing edges on each other along the normal and keeps the places where the
-/// rounded edges overlap: at most two. The surfaces must be no farther apart than their radii. MIS:
-/// contactPoints
+/// rounded edges overlap: at most two. The surfaces may be `margin` apart. MIS: contactPoints
 template <Scalar S>
-void clip(const SupportPair<S>& pair, S radiusA, S radiusB, const Vector<S>& n, CollisionInfo<S>& info) {
+void clip(const SupportPair<S>& pair, S radiusA, S radiusB, S margin, const Vector<S>& n,
+          CollisionInfo<S>& info) {
   const SupportEdge<S> e1 = supportEdge(pair.a, n), e2 = supportEdge(pair.b, -n);
   const S a1 = cross(e1.a, n), b1 = cross(e1.b, n), a2 = cross(e2.a, n), b2 = cross(e2.b, n);
   const S whole1 = b1 - a1, whole2 = b2 - a2;
@@ -51,7 +51,7 @@ void clip(const SupportPair<S>& pair, S radiusA, S radiusB, const Vector<S>& n, 
   const auto meet = [&](S at1, S at2, int index1, int index2) {
     const Vector<S> p1 = mulAdd(n, radiusA, pointAlong(e1, at2 - a1, whole1));
     const Vector<S> p2 = mulAdd(n, -radiusB, pointAlong(e2, at1 - a2, whole2));
-    if (dot(p2 - p1, n) > S(0)) return;
+    if (dot(p2 - p1, n) > margin) return;
     const auto hash = static_cast<std::uint32_t>(index1) << 16 | static_cast<std::uint32_t>(index2);
     info.push(p1 + pair.a.reference, p2 + pair.b.reference, hash);
   };

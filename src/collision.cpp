@@ -10,9 +10,9 @@ namespace samestep {
 namespace {
 
 template <Scalar S>
-void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info) {
+void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, CollisionInfo<S>& info) {
   const Vector<S> delta = b.center.v0 - a.center.v0;
-  const S reach = a.radius + b.radius;
+  const S reach = a.radius + b.radius + margin;
   if (exactDot(delta, delta) >= exactProduct(reach, reach)) return;
   info.normal = delta == Vector<S>() ? Vector<S>(S(1), S(0)) : normalize(delta);
   info.push(mulAdd(info.normal, a.radius, a.center.v0), mulAdd(info.normal, -b.radius, b.center.v0), 0);
@@ -34,10 +34,9 @@ bool endMayTouch(const PlacedShape<S>& shape, int vertex, const Vector<S>& away)
 
 template <Scalar S>
 void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, const NearestEdge<S>& nearest,
-                    CollisionInfo<S>& info) {
+                    S reach, CollisionInfo<S>& info) {
   const Vector<S> corner = other.planes[nearest.vertex].v0;
   const Vector<S> delta = corner - circle.center.v0;
-  const S reach = circle.radius + other.radius;
   const Wide<S> apart = exactDot(delta, delta), limit = exactProduct(reach, reach);
   // As in Chipmunk, a segment that is only just met is not touched, a polygon is.
   if (apart > limit || (apart == limit && other.type == ShapeType::segment)) return;
@@ -51,12 +50,13 @@ void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, c
 
 /// A circle and a segment or polygon. One look at the edges finds what GJK and EPA would.
 template <Scalar S>
-void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, CollisionInfo<S>& info) {
+void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, S margin,
+                   CollisionInfo<S>& info) {
   const Vector<S> c = circle.center.v0;
   const NearestEdge<S> nearest = nearestEdge(other, c);
-  const S reach = circle.radius + other.radius;
+  const S reach = circle.radius + other.radius + margin;
   if (nearest.distance > reach) return;
-  if (nearest.vertex >= 0) return circleToCorner(circle, other, nearest, info);
+  if (nearest.vertex >= 0) return circleToCorner(circle, other, nearest, reach, info);
   if (nearest.distance == reach && other.type == ShapeType::segment) return;
   const Vector<S> n = -other.planes[nearest.edge].n;
   info.normal = n;
@@ -65,7 +65,7 @@ void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, Co
 
 /// Segments and polygons, in any order.
 template <Scalar S>
-void edgesToEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
+void edgesToEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, CollisionInfo<S>& info,
                   CollisionStats* stats) {
   const Vector<S> reference = a.planes[0].v0;
   const SupportPair<S> pair{{a, reference}, {b, reference}};
@@ -74,10 +74,10 @@ void edgesToEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInf
                                         (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
   const ClosestPoints<S> closest = gjk(pair, info.id, axis, stats);
   info.id = closest.id;
-  if (closest.distance > a.radius + b.radius) return;
+  if (closest.distance > a.radius + b.radius + margin) return;
   if (!endMayTouch(a, closest.vertexA, closest.normal) || !endMayTouch(b, closest.vertexB, -closest.normal))
     return;
-  clip(pair, a.radius, b.radius, closest.normal, info);
+  clip(pair, a.radius, b.radius, margin, closest.normal, info);
 }
 
 /// The same contact with the shapes exchanged.
@@ -94,26 +94,26 @@ void exchange(CollisionInfo<S>& info) {
 
 template <Scalar S>
 void collideSorted(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
-                   CollisionStats* stats) {
+                   CollisionStats* stats, S margin) {
   require<Fault::CollisionError>(a.type <= b.type);
   if (a.type != ShapeType::circle) {
-    edgesToEdges(a, b, info, stats);
+    edgesToEdges(a, b, margin, info, stats);
   } else if (b.type == ShapeType::circle) {
-    circleToCircle(a, b, info);
+    circleToCircle(a, b, margin, info);
   } else {
-    circleToEdges(a, b, info);
+    circleToEdges(a, b, margin, info);
   }
 }
 
 template <Scalar S>
 CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
-                         CollisionStats* stats) {
+                         CollisionStats* stats, S margin) {
   CollisionInfo<S> info;
   info.id = start;
   if (a.type <= b.type) {
-    collideSorted(a, b, info, stats);
+    collideSorted(a, b, info, stats, margin);
   } else {
-    collideSorted(b, a, info, stats);
+    collideSorted(b, a, info, stats, margin);
     exchange(info);
   }
   return info;
@@ -137,26 +137,26 @@ ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, c
 
 #ifndef SAMESTEP_FIXED_ONLY
 template CollisionInfo<double> collide<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                               CollisionId, CollisionStats*);
+                                               CollisionId, CollisionStats*, double);
 template ContactPointSet<double> shapesCollide<double>(const Shape<double>&, const Transform<double>&,
                                                        const Shape<double>&, const Transform<double>&);
 template void collideSorted<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                    CollisionInfo<double>&, CollisionStats*);
+                                    CollisionInfo<double>&, CollisionStats*, double);
 #endif
 template CollisionInfo<Fixed> collide<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
-                                             CollisionId, CollisionStats*);
+                                             CollisionId, CollisionStats*, Fixed);
 template ContactPointSet<Fixed> shapesCollide<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&,
                                                      const Shape<Fixed>&, const Transform<Fixed>&);
 template void collideSorted<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
-                                   CollisionInfo<Fixed>&, CollisionStats*);
+                                   CollisionInfo<Fixed>&, CollisionStats*, Fixed);
 template CollisionInfo<CheckedFixed> collide<CheckedFixed>(const PlacedShape<CheckedFixed>&,
                                                            const PlacedShape<CheckedFixed>&, CollisionId,
-                                                           CollisionStats*);
+                                                           CollisionStats*, CheckedFixed);
 template ContactPointSet<CheckedFixed> shapesCollide<CheckedFixed>(const Shape<CheckedFixed>&,
                                                                    const Transform<CheckedFixed>&,
                                                                    const Shape<CheckedFixed>&,
                                                                    const Transform<CheckedFixed>&);
 template void collideSorted<CheckedFixed>(const PlacedShape<CheckedFixed>&, const PlacedShape<CheckedFixed>&,
-                                          CollisionInfo<CheckedFixed>&, CollisionStats*);
+                                          CollisionInfo<CheckedFixed>&, CollisionStats*, CheckedFixed);
 
 }  // namespace samestep
