@@ -4,6 +4,7 @@
 #include <samestep/error.h>
 
 #include "contact_row.h"
+#include "require_ieee.h"
 
 namespace samestep {
 

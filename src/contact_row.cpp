@@ -98,16 +98,17 @@ void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairRespo
 #ifndef SAMESTEP_FIXED_ONLY
 template PairResponse<double> respond(const Body<double>&, const Body<double>&);
 template double effectiveInverseMass(const PairResponse<double>&, double, double);
-template void prepareAxes(const Pair<double>&, const Contact<double>&, const PairResponse<double>&, const Body<double>&,
-                          const Body<double>&, ContactAxes<double>&);
+template void prepareAxes(const Pair<double>&, const Contact<double>&, const PairResponse<double>&,
+                          const Body<double>&, const Body<double>&, ContactAxes<double>&);
 #endif
 template PairResponse<Fixed> respond(const Body<Fixed>&, const Body<Fixed>&);
 template Fixed effectiveInverseMass(const PairResponse<Fixed>&, Fixed, Fixed);
-template void prepareAxes(const Pair<Fixed>&, const Contact<Fixed>&, const PairResponse<Fixed>&, const Body<Fixed>&,
-                          const Body<Fixed>&, ContactAxes<Fixed>&);
+template void prepareAxes(const Pair<Fixed>&, const Contact<Fixed>&, const PairResponse<Fixed>&,
+                          const Body<Fixed>&, const Body<Fixed>&, ContactAxes<Fixed>&);
 template PairResponse<CheckedFixed> respond(const Body<CheckedFixed>&, const Body<CheckedFixed>&);
 template CheckedFixed effectiveInverseMass(const PairResponse<CheckedFixed>&, CheckedFixed, CheckedFixed);
-template void prepareAxes(const Pair<CheckedFixed>&, const Contact<CheckedFixed>&, const PairResponse<CheckedFixed>&, const Body<CheckedFixed>&,
+template void prepareAxes(const Pair<CheckedFixed>&, const Contact<CheckedFixed>&,
+                          const PairResponse<CheckedFixed>&, const Body<CheckedFixed>&,
                           const Body<CheckedFixed>&, ContactAxes<CheckedFixed>&);
 
 }  // namespace samestep

@@ -58,7 +58,8 @@ void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairRespo
 
 /// The relative speed of the contact points along the normal, m/s; negative where they approach.
 template <Scalar S>
-[[gnu::always_inline]] inline S normalSpeed(const ContactAxes<S>& row, const Vector<S>& dv, S spinA, S spinB) {
+[[gnu::always_inline]] inline S normalSpeed(const ContactAxes<S>& row, const Vector<S>& dv, S spinA,
+                                            S spinB) {
   return dot4(row.normal.x, dv.x, row.normal.y, dv.y, row.normalArmB, spinB, -row.normalArmA, spinA);
 }
 

@@ -18,8 +18,8 @@ void ImpulseSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
     const S gap = dot(contact.pointB - contact.pointA, pair.normal);
     const S overlap = clamp(-(gap + slop), S(0), S(1 << 10));
     row.bias = min(overlap * biasRate, kMaxSpeed<S>);
-    row.bounce = pair.elasticity * normalSpeed(row, b.velocity() - a.velocity(), a.angularVelocity(),
-                                               b.angularVelocity());
+    row.bounce = pair.elasticity *
+                 normalSpeed(row, b.velocity() - a.velocity(), a.angularVelocity(), b.angularVelocity());
   }
 }
 

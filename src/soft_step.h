@@ -71,8 +71,8 @@ struct SoftSolver {
   S substep{}, perSubstep{}, kept{1}, pushSpeed{};
 
   /// Builds the rows of one pair.
-  void preStep(const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA, std::uint32_t indexB, const Body<S>& a,
-               const Body<S>& b, bool roundA, bool roundB, S bounceThreshold);
+  void preStep(const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA, std::uint32_t indexB,
+               const Body<S>& a, const Body<S>& b, bool roundA, bool roundB, S bounceThreshold);
   void integrateVelocities();
   void warmStart();
   /// With springs.

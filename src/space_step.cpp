@@ -2,21 +2,26 @@
 // The step, stage by stage.
 #include <algorithm>
 
+#include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {
 
 template <Scalar S>
 void Space<S>::step(S dt) {
+  requireUnlocked();
+  if (dt == S(0)) return;
   checkStep(dt);
 
   const S before = state_.timeStep;
   state_.timeStep = dt;
   ++state_.stamp;
   impl_->held.assign(state_.bodies.slots(), 0);
-  impl_->threadsKnown = false;
   {
     LockGuard guard(*this);
+    // What position functions ask about is the world before any of them moved a body.
+    if (!impl_->positionFuncs.empty()) refreshTouched();
+    typename Impl::KeepPlaced keep(*impl_);
     if (state_.settings.solver == SolverKind::sequentialImpulses) {
       integratePositions(dt);
       updateShapes();
@@ -38,6 +43,7 @@ void Space<S>::step(S dt) {
     }
     postSolve();
     listRangeEvents();
+    keep.end();
     guard.finish();
   }
 }
@@ -49,7 +55,6 @@ void Space<S>::endStage(Stage stage) {
 
 template <Scalar S>
 void Space<S>::checkStep(S dt) const {
-  requireUnlocked();
   require<Fault::ValueOutOfRange>(dt > S(0) && dt <= kMaxTimeStep<S>);
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
@@ -62,6 +67,29 @@ void Space<S>::checkStep(S dt) const {
   }
 }
 
+/// Lets a body's own function move it; whatever that did, the body is held within the world.
+template <Scalar S>
+void Space<S>::callPositionFunc(std::uint32_t index, S dt) {
+  Body<S>& body = state_.bodies.valueAt(index);
+  const auto* entry = Impl::find(impl_->positionFuncs, body.positionFunc());
+  {
+    const typename Body<S>::WithinStep within(body, impl_->held[index]);
+    entry->function(body, dt, entry->data);
+  }
+  impl_->held[index] |= body.holdPosition(S(0), worldExtent());
+}
+
+template <Scalar S>
+void Space<S>::callVelocityFunc(std::uint32_t index, S kept, S dt) {
+  Body<S>& body = state_.bodies.valueAt(index);
+  const auto* entry = Impl::find(impl_->velocityFuncs, body.velocityFunc());
+  {
+    const typename Body<S>::WithinStep within(body, impl_->held[index]);
+    entry->function(body, gravity(), kept, dt, entry->data);
+  }
+  impl_->touch(index);
+}
+
 template <Scalar S>
 void Space<S>::integratePositions(S dt) {
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
@@ -69,10 +97,7 @@ void Space<S>::integratePositions(S dt) {
     Body<S>& body = state_.bodies.valueAt(i);
     if (body.type() == BodyType::staticBody) continue;
     if (body.positionFunc() != 0) [[unlikely]] {
-      const auto* entry = Impl::find(impl_->positionFuncs, body.positionFunc());
-      entry->function(body, dt, entry->data);
-      // Whatever it did, the body is held within the world.
-      impl_->held[i] |= body.holdPosition(S(0), worldExtent());
+      callPositionFunc(i, dt);
     } else {
       impl_->held[i] |= body.holdPosition(dt, worldExtent());
     }
@@ -163,6 +188,7 @@ void Space<S>::findPairs() {
   }
   while (old < pairs.size()) keepTouched(pairs[old]);
   if (copying) pairs.swap(impl.nextPairs);
+  impl.threadsKnown = false;
   endStage(Stage::findPairs);
 }
 
@@ -180,9 +206,8 @@ template <Scalar S>
 void Space<S>::collidePair(Pair<S>& pair) {
   const bool sensor =
       state_.shapes.valueAt(pair.a.index).sensor() || state_.shapes.valueAt(pair.b.index).sensor();
-  const CollisionInfo<S> info =
-      collide(impl_->placed[pair.a.index], impl_->placed[pair.b.index], pair.collisionId, &collisionStats_,
-              sensor ? S(0) : pairMargin());
+  const CollisionInfo<S> info = collide(impl_->placed[pair.a.index], impl_->placed[pair.b.index],
+                                        pair.collisionId, &collisionStats_, sensor ? S(0) : pairMargin());
   pair.collisionId = info.id;
   if (info.count == 0) return;
   const bool wanted = applyCollision(pair, info);
@@ -236,6 +261,15 @@ bool Space<S>::applyCollision(Pair<S>& pair, const CollisionInfo<S>& info) {
   return askHandlers(pair);
 }
 
+/// Whether both bodies are static: such a pair stays as it is.
+template <Scalar S>
+bool Space<S>::rests(const Pair<S>& pair) const {
+  const auto isStatic = [&](ShapeId id) {
+    return state_.bodies.valueAt(state_.shapes.valueAt(id.index).body().index).type() == BodyType::staticBody;
+  };
+  return isStatic(pair.a) && isStatic(pair.b);
+}
+
 /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
 /// MIS: spaceArbiterSetFilter
 template <Scalar S>
@@ -244,7 +278,7 @@ void Space<S>::expirePairs() {
   bool dropped = false;
   for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
     Pair<S>& pair = state_.pairs[i];
-    if (pair.state == ArbiterState::apart || pair.stamp == state_.stamp) continue;
+    if (pair.state == ArbiterState::apart || pair.stamp == state_.stamp || rests(pair)) continue;
     if (pair.state != ArbiterState::cached) {
       pair.state = ArbiterState::cached;
       callSeparate(pair, false);
@@ -267,14 +301,24 @@ void Space<S>::expirePairs() {
       ++kept;
     }
     state_.pairs.resize(kept);
+    impl.threadsKnown = false;
   }
   endStage(Stage::collide);
 }
 
+namespace {
+
+template <Scalar S>
+ImpulseBody<S> velocitiesOf(const Body<S>& body) {
+  return {body.velocity(), body.angularVelocity(), body.velocityBias(), body.angularVelocityBias()};
+}
+
+}  // namespace
+
 /// Calls visit(pair, solver index of A, of B, body A, body B) for each pair to be solved, in order.
 template <Scalar S>
-template <class PrepareRow>
-void Space<S>::eachSolvedPair(PrepareRow&& visit) {
+template <class Visit>
+void Space<S>::eachSolvedPair(Visit&& visit) {
   Impl& impl = *impl_;
   impl.solverBodies.clear();
   impl.solverIndex.assign(state_.bodies.slots(), Impl::kNone);
@@ -295,10 +339,9 @@ void Space<S>::preStep(S dt) {
   const S biasRate = min(remaining / dt, S(1 << 14));
   impl.solver.rows.clear();
   impl.solver.bodies.clear();
-  eachSolvedPair([&](const Pair<S>& pair, std::uint32_t indexA, std::uint32_t indexB, const Body<S>& a,
-                     const Body<S>& b) {
-    impl.solver.preStep(pair, indexA, indexB, a, b, collisionSlop(), biasRate);
-  });
+  eachSolvedPair(
+      [&](const Pair<S>& pair, std::uint32_t indexA, std::uint32_t indexB, const Body<S>& a,
+          const Body<S>& b) { impl.solver.preStep(pair, indexA, indexB, a, b, collisionSlop(), biasRate); });
   endStage(Stage::preStep);
 }
 
@@ -309,9 +352,10 @@ void Space<S>::integrateVelocities(S dt) {
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
     Body<S>& body = state_.bodies.valueAt(i);
-    if (body.velocityFunc() != 0) [[unlikely]] {
-      const auto* entry = Impl::find(impl_->velocityFuncs, body.velocityFunc());
-      entry->function(body, pull, kept, dt, entry->data);
+    if (body.type() == BodyType::staticBody) {
+      // Nothing moves it, and no function is asked to.
+    } else if (body.velocityFunc() != 0) [[unlikely]] {
+      callVelocityFunc(i, kept, dt);
     } else if (body.isDynamic()) {
       impl_->held[i] |= body.holdVelocity(body.accelerated(pull, kept, dt));
     }
@@ -326,9 +370,7 @@ void Space<S>::solve(S dtCoefficient) {
   Impl& impl = *impl_;
   ImpulseSolver<S>& solver = impl.solver;
   for (const std::uint32_t index : impl.solverBodies) {
-    const Body<S>& body = state_.bodies.valueAt(index);
-    solver.bodies.push_back(
-        {body.velocity_, body.angularVelocity_, body.velocityBias_, body.angularVelocityBias_});
+    solver.bodies.push_back(velocitiesOf(state_.bodies.valueAt(index)));
   }
   std::size_t next = 0;
   for (const Pair<S>& pair : state_.pairs) {
@@ -408,9 +450,10 @@ void Space<S>::softPreStep(S dt) {
   for (const std::uint32_t index : impl.solverBodies) {
     Body<S>& body = state_.bodies.valueAt(index);
     SoftDrive<S> drive;
-    if (body.velocityFunc() != 0) [[unlikely]] {
-      const auto* entry = Impl::find(impl.velocityFuncs, body.velocityFunc());
-      entry->function(body, gravity(), damping() == S(1) ? S(1) : pow(damping(), dt), dt, entry->data);
+    if (body.type() == BodyType::staticBody) {
+      // Nothing moves it, and no function is asked to.
+    } else if (body.velocityFunc() != 0) [[unlikely]] {
+      callVelocityFunc(index, damping() == S(1) ? S(1) : pow(damping(), dt), dt);
     } else if (body.isDynamic()) {
       const typename Body<S>::Motion motion = body.acceleration(gravity());
       drive.velocity = motion.velocity * soft.substep;
@@ -458,9 +501,7 @@ void Space<S>::softFinish(S dt) {
     const SoftBody<S>& solved = impl.soft.bodies[i];
     if (body.isDynamic()) impl.held[index] |= body.holdVelocity({solved.velocity, solved.angularVelocity});
     if (body.positionFunc() != 0) [[unlikely]] {
-      const auto* entry = Impl::find(impl.positionFuncs, body.positionFunc());
-      entry->function(body, dt, entry->data);
-      impl.held[index] |= body.holdPosition(S(0), worldExtent());
+      callPositionFunc(index, dt);
     } else {
       impl.held[index] |= body.holdMoved(solved.moved, solved.turned, worldExtent());
     }
