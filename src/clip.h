@@ -39,16 +39,17 @@ Vector<S> pointAlong(const SupportEdge<S>& edge, S part, S whole) {
 }
 
 /// Projects the ends of two facing edges on each other along the normal and keeps the places where the
-/// rounded edges overlap: at most two. Only differences of points count. MIS: contactPoints
+/// rounded edges are at most `margin` apart: at most two. Only differences of points count.
+/// MIS: contactPoints
 template <Scalar S>
 void clip(const SupportEdge<S>& e1, S radius1, const SupportEdge<S>& e2, S radius2, const Vector<S>& n,
-          CollisionInfo<S>& info) {
+          S margin, CollisionInfo<S>& info) {
   const S whole1 = cross(e1.b - e1.a, n), whole2 = cross(e2.b - e2.a, n), starts = cross(e2.a - e1.a, n);
   info.normal = n;
   const auto meet = [&](S part1, S part2, int index1, int index2) {
     const Vector<S> p1 = pointAlong(e1, part1, whole1) + n * radius1;
     const Vector<S> p2 = pointAlong(e2, part2, whole2) - n * radius2;
-    if (dot(p2 - p1, n) > S(0)) return;
+    if (dot(p2 - p1, n) > margin) return;
     info.push(p1, p2, static_cast<std::uint32_t>(index1) << 16 | static_cast<std::uint32_t>(index2));
   };
   meet(cross(e2.b - e1.a, n), -starts, e1.indexA, e2.indexB);

@@ -224,6 +224,8 @@ class Body {
     S angularVelocity;
   };
   Motion accelerated(const Vector<S>& gravity, S damping, S dt) const;
+  /// What gravity, force and torque do to the velocities, per second.
+  Motion acceleration(const Vector<S>& gravity) const;
   /// Why the body cannot be stepped, or nullptr.
   const char* cannotStep() const;
   /// Takes the velocities, held at the limits; says what was held.
@@ -249,6 +251,7 @@ class Body {
   };
   /// Moves, held within `extent` metres of the origin; says what was held.
   std::uint8_t holdPosition(S dt, S extent);
+  std::uint8_t holdMoved(const Vector<S>& by, S angle, S extent);
 
   // State.
   Vector<S> center_{};

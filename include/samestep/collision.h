@@ -62,10 +62,11 @@ struct CollisionInfo {
 ///
 /// @param start  the id of the last answer for this pair in this order, or 0; any value is safe
 /// @param stats  if not null, remarks are counted there
+/// @param margin  m, >= 0: shapes this far apart also give their nearest points, with a positive distance
 /// MIS: collide
 template <Scalar S>
 CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start = 0,
-                         CollisionStats* stats = nullptr);
+                         CollisionStats* stats = nullptr, S margin = S(0));
 
 /// One point of a ContactPointSet.
 template <Scalar S>
@@ -91,17 +92,17 @@ ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, c
 
 #ifndef SAMESTEP_FIXED_ONLY
 extern template CollisionInfo<double> collide<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                                      CollisionId, CollisionStats*);
+                                                      CollisionId, CollisionStats*, double);
 extern template ContactPointSet<double> shapesCollide<double>(const Shape<double>&, const Transform<double>&,
                                                               const Shape<double>&, const Transform<double>&);
 #endif
 extern template CollisionInfo<Fixed> collide<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
-                                                    CollisionId, CollisionStats*);
+                                                    CollisionId, CollisionStats*, Fixed);
 extern template ContactPointSet<Fixed> shapesCollide<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&,
                                                             const Shape<Fixed>&, const Transform<Fixed>&);
 extern template CollisionInfo<CheckedFixed> collide<CheckedFixed>(const PlacedShape<CheckedFixed>&,
                                                                   const PlacedShape<CheckedFixed>&,
-                                                                  CollisionId, CollisionStats*);
+                                                                  CollisionId, CollisionStats*, CheckedFixed);
 extern template ContactPointSet<CheckedFixed> shapesCollide<CheckedFixed>(const Shape<CheckedFixed>&,
                                                                           const Transform<CheckedFixed>&,
                                                                           const Shape<CheckedFixed>&,
