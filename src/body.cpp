@@ -233,16 +233,29 @@ Vector<S> Body<S>::velocityAt(const Vector<S>& worldPoint) const {
 }
 
 template <Scalar S>
-void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
+typename Body<S>::Motion Body<S>::pushed(const Vector<S>& impulse, const Vector<S>& worldPoint) const {
   require<Fault::IllegalBody>(within(impulse, kMaxForce<S>) && within(worldPoint, kMaxWorldExtent<S>),
                               "Body's impulse is invalid.");
-  if (!isDynamic()) return;
+  if (!isDynamic()) return {};
   const Vector<S> arm = worldPoint - center_;
   const Scaled<S> turning = toScaled(arm.x) * toScaled(impulse.y) - toScaled(arm.y) * toScaled(impulse.x);
   const S spin = toScalarWithin(turning * inverseMoment_, kMaxAngle<S>);
   const Vector<S> change(answer(impulse.x, inverseMass_), answer(impulse.y, inverseMass_));
+  return {change, spin};
+}
 
-  holdVelocity({velocity_ + change, angularVelocity_ + spin});
+template <Scalar S>
+void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
+  const Motion change = pushed(impulse, worldPoint);
+  if (isDynamic()) holdVelocity({velocity_ + change.velocity, angularVelocity_ + change.angularVelocity});
+}
+
+template <Scalar S>
+void Body<S>::applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
+  const Motion change = pushed(impulse, worldPoint);
+  velocityBias_ = held(velocityBias_ + change.velocity, kMaxSpeed<S>);
+  angularVelocityBias_ =
+      clamp(angularVelocityBias_ + change.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
 }
 
 template <Scalar S>

@@ -14,16 +14,20 @@ struct SupportEdge {
   int indexA, indexB;
 };
 
-/// The edge of a segment or polygon that faces n most: of the two at the vertex farthest along n, the one
-/// whose normal is nearer to n. MIS: supportEdgeForPoly, supportEdgeForSegment
+/// The edge that ends at a vertex.
 template <Scalar S>
-SupportEdge<S> supportEdge(const SupportShape<S>& shape, const Vector<S>& n) {
-  const Plane<S>* planes = shape.planes;
-  const int i1 = shape.farthest(n);
-  const int i0 = (i1 == 0 ? shape.count : i1) - 1;
-  const int i2 = i1 + 1 < shape.count ? i1 + 1 : 0;
-  if (exactDot(n, planes[i1].n) > exactDot(n, planes[i2].n)) return {planes[i0].v0, planes[i1].v0, i0, i1};
-  return {planes[i1].v0, planes[i2].v0, i1, i2};
+SupportEdge<S> edgeTo(const PlacedShape<S>& shape, int vertex) {
+  const int before = (vertex == 0 ? shape.count : vertex) - 1;
+  return {shape.planes[before].v0, shape.planes[vertex].v0, before, vertex};
+}
+
+/// Of the two edges at the vertex farthest along n, the one whose normal is nearer to n.
+/// MIS: supportEdgeForPoly, supportEdgeForSegment
+template <Scalar S>
+SupportEdge<S> edgeAt(const PlacedShape<S>& shape, int vertex, const Vector<S>& n) {
+  const int after = vertex + 1 < shape.count ? vertex + 1 : 0;
+  const bool before = exactDot(n, shape.planes[vertex].n) > exactDot(n, shape.planes[after].n);
+  return edgeTo(shape, before ? vertex : after);
 }
 
 /// The point of an edge at part / whole of the way, held within the edge; its ends exactly.

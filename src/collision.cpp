@@ -65,17 +65,25 @@ void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, S 
   info.push(c + n * circle.radius, c + n * (nearest.distance - other.radius), 0);
 }
 
-/// What two shapes with edges touch in, if they are near enough and the ends of segments allow it.
+/// Whether the ends of segments allow shapes with edges to touch there.
 template <Scalar S>
-void touch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest, S margin,
-           CollisionInfo<S>& info) {
-  info.id = closest.id;
-  if (closest.distance > a.radius + b.radius + margin) return;
-  if (!endMayTouch(a, closest.vertexA, closest.normal)) return;
-  if (!endMayTouch(b, closest.vertexB, -closest.normal)) return;
-  const Vector<S> n = closest.normal;
-  clip(supportEdge(SupportShape<S>(a), n), a.radius, supportEdge(SupportShape<S>(b), -n), b.radius, n, margin,
-       info);
+bool endsMayTouch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest) {
+  return endMayTouch(a, closest.vertexA, closest.normal) && endMayTouch(b, closest.vertexB, -closest.normal);
+}
+
+/// Two shapes of which a face is nearest to a vertex.
+template <Scalar S>
+void touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis,
+               S margin, CollisionInfo<S>& info) {
+  const PlacedShape<S>&reference = axis.onB ? b : a, &other = axis.onB ? a : b;
+  const Vector<S> outward = reference.planes[axis.face].n;
+  if (!endMayTouch(other, axis.vertex, -outward)) return;
+  const SupportEdge<S> face = edgeTo(reference, axis.face), edge = edgeAt(other, axis.vertex, -outward);
+  if (axis.onB) {
+    clip(edge, a.radius, face, b.radius, -outward, margin, info);
+  } else {
+    clip(face, a.radius, edge, b.radius, outward, margin, info);
+  }
 }
 
 template <Scalar S>
@@ -85,6 +93,18 @@ ClosestPoints<S> closestPoints(const PlacedShape<S>& a, const PlacedShape<S>& b,
   const Vector<S> axis = perp(Vector<S>((a.box.left - b.box.left) + (a.box.right - b.box.right),
                                         (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
   return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);
+}
+
+/// Two shapes with edges, by the search for their nearest features.
+template <Scalar S>
+void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start, S margin,
+                  CollisionInfo<S>& info, CollisionStats* stats) {
+  const ClosestPoints<S> closest = closestPoints(a, b, start, stats);
+  info.id = closest.id;
+  if (closest.distance > a.radius + b.radius + margin || !endsMayTouch(a, b, closest)) return;
+  const Vector<S> n = closest.normal;
+  clip(edgeAt(a, SupportShape<S>(a).farthest(n), n), a.radius, edgeAt(b, SupportShape<S>(b).farthest(-n), -n),
+       b.radius, n, margin, info);
 }
 
 /// Up to here, looking at every vertex for every face is faster than searching.
@@ -100,16 +120,10 @@ void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, Col
     const FaceAxis<S> axis = bestFace(a, b, reach, start);
     info.id = axis.id();
     if (axis.separation > reach) return;
-    if (axis.separation <= S(0) || facesVertex(a, b, axis)) {
-      const Vector<S> normal = axis.onB ? -b.planes[axis.face].n : a.planes[axis.face].n;
-      touch(a, b,
-            {normal, axis.separation, axis.id(), axis.onB ? axis.vertex : -1, axis.onB ? -1 : axis.vertex},
-            margin, info);
-      return;
-    }
+    if (axis.separation <= S(0) || facesVertex(a, b, axis)) return touchFace(a, b, axis, margin, info);
     // Rounded corners near each other.
   }
-  touch(a, b, closestPoints(a, b, start, stats), margin, info);
+  touchNearest(a, b, start, margin, info, stats);
 }
 
 /// The same contact with the shapes exchanged.
@@ -129,7 +143,7 @@ void collideSorted(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionIn
                    CollisionStats* stats, S margin) {
   require<Fault::CollisionError>(a.type <= b.type);
   if (b.type == ShapeType::segment && a.type == ShapeType::segment) {
-    touch(a, b, closestPoints(a, b, info.id, stats), margin, info);
+    touchNearest(a, b, info.id, margin, info, stats);
   } else if (a.type != ShapeType::circle) {
     edgesToPoly(a, b, margin, info, stats);
   } else if (b.type == ShapeType::circle) {
