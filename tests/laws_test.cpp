@@ -282,8 +282,9 @@ struct Ends {
 };
 
 template <Scalar S>
-std::uint64_t collideAtTheEnds(const Ends& ends, bool boxes) {
+std::uint64_t collideAtTheEnds(const Ends& ends, bool boxes, SolverKind solver) {
   Space<S> space;
+  space.setSolver(solver);
   space.setWorldExtent(kMaxWorldExtent<S>);
   space.setGravity({S(0), -kMaxAcceleration<S>});
   space.setCollisionBias(S(0));
@@ -334,17 +335,19 @@ TEST(RangeEndsTest, NothingOverflowsAtTheEndsOfTheSupportedRanges) {
         for (const double sizeB : {0.03125, 256.0}) {
           for (const double speed : {0.0, 1024.0}) {
             for (const double place : {0.0, 32768.0, 1048576.0}) {
-              for (const double dt : {1.0 / 60, 1.0, 0x1p-30}) {
-                const bool boxes = runs % 2 == 1;
+              for (const double dt : {1.0 / 60, 1.0, 0x1p-30, 1.0 / 64, 1.0 / 1024}) {
+                const bool boxes = runs / 2 % 2 == 1;
+                const SolverKind solver =
+                    runs % 2 == 0 ? SolverKind::sequentialImpulses : SolverKind::softStep;
                 const Ends ends = {massA, massB, sizeA, sizeB, speed, place, dt};
                 const auto what = [&] {
-                  return ::testing::Message()
-                         << massA << " kg " << massB << " kg " << sizeA << " m " << sizeB << " m " << speed
-                         << " m/s at " << place << " dt " << dt << " boxes " << boxes;
+                  return ::testing::Message() << massA << " kg " << massB << " kg " << sizeA << " m " << sizeB
+                                              << " m " << speed << " m/s at " << place << " dt " << dt
+                                              << " boxes " << boxes << " solver " << int(solver);
                 };
                 try {
-                  const std::uint64_t hash = collideAtTheEnds<CheckedFixed>(ends, boxes);
-                  EXPECT_EQ(hash, collideAtTheEnds<Fixed>(ends, boxes)) << what();
+                  const std::uint64_t hash = collideAtTheEnds<CheckedFixed>(ends, boxes, solver);
+                  EXPECT_EQ(hash, collideAtTheEnds<Fixed>(ends, boxes, solver)) << what();
                 } catch (const std::exception& error) {
                   ADD_FAILURE() << error.what() << ": " << what();
                 }
