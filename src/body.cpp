@@ -45,11 +45,6 @@ S answer(S force, const Scaled<S>& inverse) {
   return toScalarWithin(toScaled(force) * inverse, S(1 << 30));
 }
 
-template <Scalar S>
-Vector<S> held(const Vector<S>& v, S limit) {
-  return {clamp(v.x, -limit, limit), clamp(v.y, -limit, limit)};
-}
-
 }  // namespace
 
 template <Scalar S>
@@ -253,7 +248,7 @@ void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint
 template <Scalar S>
 void Body<S>::applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
   const Motion change = pushed(impulse, worldPoint);
-  velocityBias_ = held(velocityBias_ + change.velocity, kMaxSpeed<S>);
+  velocityBias_ = heldWithin(velocityBias_ + change.velocity, kMaxSpeed<S>);
   angularVelocityBias_ =
       clamp(angularVelocityBias_ + change.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
 }
@@ -301,7 +296,7 @@ typename Body<S>::Motion Body<S>::accelerated(const Vector<S>& gravity, S dampin
 
 template <Scalar S>
 std::uint8_t Body<S>::holdVelocity(const Motion& motion) {
-  velocity_ = held(motion.velocity, kMaxSpeed<S>);
+  velocity_ = heldWithin(motion.velocity, kMaxSpeed<S>);
   angularVelocity_ = clamp(motion.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
   return static_cast<std::uint8_t>((velocity_ == motion.velocity ? kHeldNothing : kHeldSpeed) |
                                    (angularVelocity_ == motion.angularVelocity ? kHeldNothing : kHeldSpin));
@@ -323,7 +318,7 @@ std::uint8_t Body<S>::holdMoved(const Vector<S>& by, S angle, S extent) {
   const Vector<S> moved = center_ + by;
   const S turned = angle_ + angle;
   std::uint8_t what = kHeldNothing;
-  center_ = held(moved, extent);
+  center_ = heldWithin(moved, extent);
   if (!(center_ == moved)) {
     what |= kHeldAtBorder;
     if (center_.x != moved.x) velocity_.x = S(0);
