@@ -14,6 +14,7 @@
 
 #include "samestep/fixed_math.h"
 #include "samestep/fixed_tables.h"
+#include "test_random.h"
 
 namespace samestep {
 namespace {
@@ -41,23 +42,6 @@ class Real {
 
  private:
   mpfr_t value_;
-};
-
-/// splitmix64.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z = (z ^ z >> 27) * 0x94d049bb133111eb;
-    return z ^ z >> 31;
-  }
-  /// Every size from 0 to 63 bits alike, either sign.
-  std::int64_t anySize() { return static_cast<std::int64_t>(next()) >> (next() % 64); }
-
- private:
-  std::uint64_t state_;
 };
 
 /// Zero, units, powers of two and their neighbours, extremes.
