@@ -25,7 +25,9 @@ std::int64_t parsed(std::string_view text) {
 DecimalStatus statusOf(std::string_view text) {
   Fixed out = Fixed::fromRaw(12345);
   const DecimalStatus status = parseDecimal(text, out);
-  if (status != DecimalStatus::ok) EXPECT_EQ(out.raw(), 12345) << text;
+  if (status != DecimalStatus::ok) {
+    EXPECT_EQ(out.raw(), 12345) << text;
+  }
   return status;
 }
 

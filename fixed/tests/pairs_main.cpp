@@ -5,7 +5,6 @@
 #include <cstdlib>
 
 #include "samestep/fixed_math.h"
-#include "small_reference.h"
 
 namespace samestep {
 namespace {
@@ -15,13 +14,23 @@ constexpr int kLeast = -32768, kMost = 32767;
 
 Small small(int bits) { return Small::fromRaw(static_cast<std::int16_t>(bits)); }
 
+// Everything fits in 32 bits, which makes the four thousand million pairs quick.
 bool holds(int a, int b) {
   const Small x = small(a), y = small(b);
-  const Small product = x * y;
-  if (product.raw() != static_cast<std::int16_t>(roundedQuotientOf(std::int64_t{a} * b, 256))) return false;
-  if (cross(x, y, y, x) != Small() || dot(x, y, x, -y) != (b == kLeast ? dot(x, y, x, y) : Small()))
-    return false;
-  return (x / y).raw() == saturatedQuotientOf(std::int64_t{a} * 256, b, kLeast, kMost);
+  const int exact = a * b;
+  const int rest = exact & 255;
+  const int product = (exact >> 8) + (rest > 128 || (rest == 128 && (exact & 256) != 0) ? 1 : 0);
+  if ((x * y).raw() != static_cast<std::int16_t>(product)) return false;
+
+  const int n = a * 256;
+  const int quotient = (x / y).raw();
+  if (b == 0) return quotient == (a == 0 ? 0 : a < 0 ? kLeast : kMost);
+  // The remainder is at most half of the divisor, and a tie has gone to an even quotient.
+  const int twice = 2 * std::abs(n - quotient * b), size = std::abs(b);
+  if (twice < size || (twice == size && quotient % 2 == 0)) return true;
+  // Saturated: the exact quotient is beyond the end.
+  const bool negative = (a < 0) != (b < 0);
+  return quotient == (negative ? kLeast : kMost) && std::abs(n) >= std::abs(quotient) * size;
 }
 
 }  // namespace
@@ -38,5 +47,5 @@ int main(int argc, char** argv) {
       }
     }
   }
-  std::printf("product, quotient and fused sums hold for every pair, stride %d\n", stride);
+  std::printf("product and quotient hold for every pair, stride %d\n", stride);
 }
