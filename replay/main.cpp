@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
   addHash(app, result);
   addRecord(app, result);
   addVerify(app, result);
+  addDiff(app, result);
+  addDraw(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
