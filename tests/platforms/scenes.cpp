@@ -69,13 +69,26 @@ Shape<S> randomShape(Random& random) {
   }
 }
 
+/// Numbers are drawn one by one into names: compilers evaluate arguments in different orders.
 template <Scalar S>
-void addRandom(Space<S>& space, Random& random) {
-  const BodyId id =
-      addBody(space, {random.number<S>(-7, 7), random.number<S>(2, 40)}, random.number<S>(-3, 3),
-              randomShape<S>(random), random.number<S>(0, 1), random.number<S>(0, 1));
-  Body<S>& body = space.body(id);
-  body.setVelocity({random.number<S>(-4, 4), random.number<S>(-4, 4)});
+BodyId addRandom(Space<S>& space, Random& random, const Vector<S>& position) {
+  const S angle = random.number<S>(-3, 3);
+  const Shape<S> shape = randomShape<S>(random);
+  const S friction = random.number<S>(0, 1);
+  const S elasticity = random.number<S>(0, 1);
+  return addBody(space, position, angle, shape, friction, elasticity);
+}
+
+template <Scalar S>
+void dropRandom(Space<S>& space, Random& random) {
+  Vector<S> position;
+  position.x = random.number<S>(-7, 7);
+  position.y = random.number<S>(2, 40);
+  Body<S>& body = space.body(addRandom(space, random, position));
+  Vector<S> velocity;
+  velocity.x = random.number<S>(-4, 4);
+  velocity.y = random.number<S>(-4, 4);
+  body.setVelocity(velocity);
   body.setAngularVelocity(random.number<S>(-8, 8));
 }
 
@@ -85,7 +98,7 @@ void buildSoup(Space<S>& space) {
   space.setDamping(ratio<S>(7, 8));
   addGround(space, S(8));
   Random random(1);
-  for (int i = 0; i < 150; ++i) addRandom(space, random);
+  for (int i = 0; i < 150; ++i) dropRandom(space, random);
 }
 
 template <Scalar S>
@@ -103,8 +116,10 @@ void buildTumbler(Space<S>& space) {
   }
   Random random(2);
   for (int i = 0; i < 100; ++i) {
-    addBody(space, {random.number<S>(-6, 6), random.number<S>(-6, 6)}, random.number<S>(-3, 3),
-            randomShape<S>(random), random.number<S>(0, 1), S(0));
+    Vector<S> position;
+    position.x = random.number<S>(-6, 6);
+    position.y = random.number<S>(-6, 6);
+    addRandom(space, random, position);
   }
 }
 
@@ -120,7 +135,7 @@ void comeAndGo(Space<S>& space, std::uint64_t tick) {
     if (random.oneIn(++count)) oldest = body.id();
   });
   space.removeWithShapes(oldest);
-  addRandom(space, random);
+  dropRandom(space, random);
   space.eachBody([&](const Body<S>& body) { oldest = body.id(); });
   const Vector<S> place = space.body(oldest).worldCenter();
   space.body(oldest).applyImpulse({S(1), S(2)}, {place.x + ratio<S>(1, 8), place.y});
