@@ -19,10 +19,10 @@ def fit(function, high, terms):
     return coefficients[::-1], error
 
 
-def emit(comment, name, values):
+def emit(comment, name, values, kind="std::uint64_t"):
     print(f"/// {comment}")
     body = ", ".join(f"{v:#x}" for v in values)
-    print(f"inline constexpr std::array<std::uint64_t, {len(values)}> {name} = {{{body}}};\n")
+    print(f"inline constexpr std::array<{kind}, {len(values)}> {name} = {{{body}}};\n")
 
 
 def scalar(comment, name, value):
@@ -52,9 +52,9 @@ cosine, cosineError = fit(lambda z: cos(pi / 4 * sqrt(z + tiny)), 1, 6)
 for name, coefficients, error in (("Sine", sine, sineError), ("Cosine", cosine, cosineError)):
     signed = [(-1) ** i * c for i, c in enumerate(coefficients)]
     assert all(c > 0 for c in signed)
-    widths = [63, 64, 65, 43, 43, 43]
-    emit(f"{name} on [0, pi / 4]; powers 0 to 5 of z with 63, 64, 65, 43, 43, 43 fraction bits; "
-         f"error {float(error):.1e}.", f"k{name}Terms", [fixed(c, w) for c, w in zip(signed, widths)])
+    emit(f"{name} on [0, pi / 4], error {float(error):.1e}: powers 0 to 2 of z with 63, 64, 65 fraction bits, "
+         "without their signs + - +.", f"k{name}Terms", [fixed(c, w) for c, w in zip(signed, [63, 64, 65])])
+    emit("Powers 3 to 5, Q42.", f"k{name}HighTerms", [fixed(c, 42) for c in coefficients[3:]], "std::int64_t")
 
 # atan(t) / t = 1 - z B(z), z = t^2 at most 0.0567.
 limit = mpf("0.0567")
@@ -62,15 +62,12 @@ def rest(z):
     z = z + tiny
     t = sqrt(z)
     return (1 - atan(t) / t) / z
-arc, arcError = fit(rest, limit, 6)
-signed = [(-1) ** i * c for i, c in enumerate(arc)]
-assert all(c > 0 for c in signed)
-emit(f"(1 - atan(t) / t) / z; powers 0 to 5 of z with 64, 32, 32, 32, 32, 32 fraction bits; error "
-     f"{float(arcError):.1e}.", "kArcTerms",
-     [fixed(c, 64 if i == 0 else 32) for i, c in enumerate(signed)])
-emit("atan(0), atan(1/2), atan(1) in units of 2^-62.", "kArcBase",
-     [0, fixed(atan(mpf(1) / 2), 62), fixed(atan(mpf(1)), 62)])
-scalar("pi / 2 in units of 2^-62.", "kHalfPi", fixed(pi / 2, 62))
+arc, arcError = fit(rest, limit, 5)
+emit(f"(1 - atan(t) / t) / z; powers 0 to 4 of z, Q32; error {float(arcError):.1e}.", "kArcTerms",
+     [fixed(c, 32) for c in arc], "std::int64_t")
+base = [mpf(0), atan(mpf(1) / 2), pi / 4]
+emit("atan(0), atan(1/2), atan(1), Q62; the same from pi / 2 back, from pi back, and from pi / 2 on.", "kArcBase",
+     [fixed(v, 62) for v in base + [pi / 2 - b for b in base] + [pi - b for b in base] + [pi / 2 + b for b in base]])
 
 # 2^d - 1 = d P(d), d in [0, 2^-6).
 power, powerError = fit(lambda d: (mpf(2) ** (d + tiny) - 1) / (d + tiny), mpf(2) ** -6, 6)

@@ -3,6 +3,7 @@
 
 #include <samestep/error.h>
 
+#include "require_ieee.h"
 #include "sequential_impulse.h"
 
 namespace samestep {

@@ -17,9 +17,12 @@ const S kGridScale = S(1 << kGridBits);
 template <Scalar S>
 const S kGridEdge = S(kGridLimit >> kGridBits);
 
+/// What is no number counts as -infinity here and as +infinity in gridCeil: its box overlaps everything.
 template <Scalar S>
 std::int32_t gridFloor(S x) {
-  const S scaled = clamp(x, -kGridEdge<S>, kGridEdge<S>) * kGridScale<S>;
+  const S edge = kGridEdge<S>;
+  const S clamped = x >= -edge ? min(x, edge) : -edge;
+  const S scaled = clamped * kGridScale<S>;
   const int towardZero = static_cast<int>(scaled);
   return towardZero - (S(towardZero) > scaled ? 1 : 0);
 }

@@ -3,10 +3,14 @@
 
 #include <samestep/error.h>
 
+#include "require_ieee.h"
+
 namespace samestep {
 namespace {
 
 constexpr const char* kBadPosition = "Body's position is invalid.";
+constexpr const char* kBadCenterOfMass = "Body's centre of mass is too far from its origin.";
+constexpr const char* kBadTimeStep = "The time step of a body is invalid.";
 constexpr const char* kBadVelocity = "Body's velocity is invalid.";
 constexpr const char* kBadForce = "Body's force is invalid.";
 constexpr const char* kBadAngle = "Body's angle is invalid.";
@@ -38,8 +42,7 @@ void checkMoment(S moment) {
 template <Scalar S>
 S acceleration(S force, const Scaled<S>& inverse) {
   if (force == S(0)) return S(0);
-  const S limit = S(1 << 30);
-  return clamp(toScalar<S>(toScaled(force) * inverse), -limit, limit);
+  return toScalarWithin(toScaled(force) * inverse, S(1 << 30));
 }
 
 template <Scalar S>
@@ -99,6 +102,24 @@ void Body<S>::derive() {
 }
 
 template <Scalar S>
+bool Body<S>::wellFormed() const {
+  if (type_ > BodyType::staticBody || rotates_ > 1) return false;
+  if (!(mass_ == S(0) || (mass_ >= kMinMass<S> && mass_ <= kMaxMass<S>))) return false;
+  // What shapes of any supported size and mass can add up to, with room to spare.
+  const Scaled<S> zero{};
+  const Scaled<S> large = toScaled(kMaxMoment<S>) * toScaled(kMaxMoment<S>);
+  if (!(moment_ >= zero && moment_ <= large)) return false;
+  // A centre of mass at the end of its range, on a body at the end of the world.
+  const S far = kMaxWorldExtent<S> * S(3);
+  if (!within(centerOfMass_, kMaxWorldExtent<S>) || !within(center_, far)) return false;
+  if (!within(velocity_, kMaxSpeed<S>) || !within(angularVelocity_, kMaxAngularSpeed<S>)) return false;
+  const bool still = velocity_ == Vector<S>() && angularVelocity_ == S(0);
+  if (type_ == BodyType::staticBody && !still) return false;
+  return within(angle_, kMaxAngle<S>) && within(force_, kMaxForce<S>) && within(torque_, kMaxForce<S>) &&
+         within(velocityBias_, kMaxForce<S>) && within(angularVelocityBias_, kMaxForce<S>);
+}
+
+template <Scalar S>
 void Body<S>::setType(BodyType type) {
   require<Fault::AttachedBody>(!id_.valid(),
                                "The type of a body in a space is changed by the space: see Space::setType.");
@@ -112,7 +133,7 @@ void Body<S>::setType(BodyType type) {
 
 template <Scalar S>
 S Body<S>::moment() const {
-  return toScalar<S>(exactMoment());
+  return saturated<S>(exactMoment());
 }
 
 template <Scalar S>
@@ -139,7 +160,7 @@ void Body<S>::setMassProperties(const MassProperties<S>& properties) {
   const S mass = properties.mass;
   require<Fault::IllegalBody>(mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>),
                               "Body's mass, summed over its shapes, is outside the supported range.");
-  require<Fault::IllegalBody>(within(properties.centerOfMass, kMaxWorldExtent<S>), kBadPosition);
+  require<Fault::IllegalBody>(within(properties.centerOfMass, kMaxCenterOfMass<S>), kBadCenterOfMass);
   const Vector<S> origin = position();
 
   mass_ = mass;
@@ -158,7 +179,7 @@ void Body<S>::setPosition(const Vector<S>& position) {
 
 template <Scalar S>
 void Body<S>::setCenterOfMass(const Vector<S>& center) {
-  require<Fault::IllegalBody>(within(center, kMaxWorldExtent<S>), kBadPosition);
+  require<Fault::IllegalBody>(within(center, kMaxCenterOfMass<S>), kBadCenterOfMass);
   const Vector<S> origin = position();
 
   centerOfMass_ = center;
@@ -218,10 +239,10 @@ void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint
   if (!isDynamic()) return;
   const Vector<S> arm = worldPoint - center_;
   const Scaled<S> turning = toScaled(arm.x) * toScaled(impulse.y) - toScaled(arm.y) * toScaled(impulse.x);
-  const S spin = toScalar<S>(turning * inverseMoment_);
+  const S spin = toScalarWithin(turning * inverseMoment_, kMaxAngle<S>);
   const Vector<S> change(acceleration(impulse.x, inverseMass_), acceleration(impulse.y, inverseMass_));
 
-  holdVelocity({velocity_ + change, angularVelocity_ + clamp(spin, -kMaxAngle<S>, kMaxAngle<S>)});
+  holdVelocity({velocity_ + change, angularVelocity_ + spin});
 }
 
 template <Scalar S>
@@ -234,7 +255,7 @@ void Body<S>::applyForce(const Vector<S>& force, const Vector<S>& worldPoint) {
   const Vector<S> arm = worldPoint - center_;
   const Scaled<S> turning = toScaled(arm.x) * toScaled(force.y) - toScaled(arm.y) * toScaled(force.x);
   const Vector<S> sum(toScalar<S>(fx), toScalar<S>(fy));
-  const S torque = toScalar<S>(toScaled(torque_) + turning);
+  const S torque = saturated<S>(toScaled(torque_) + turning);
   require<Fault::IllegalBody>(within(sum, kMaxForce<S>), kBadForce);
   require<Fault::IllegalBody>(within(torque, kMaxForce<S>), kBadTorque);
 
@@ -300,12 +321,13 @@ std::uint8_t Body<S>::holdPosition(S dt, S extent) {
 
 template <Scalar S>
 void Body<S>::updatePosition(S dt) {
+  require<Fault::IllegalBody>(within(dt, kMaxTimeStep<S>), kBadTimeStep);
   const Vector<S> moved = mulAdd(velocity_ + velocityBias_, dt, center_);
   const S turned = mulAdd(angularVelocity_ + angularVelocityBias_, dt, angle_);
-  require<Fault::IllegalBody>(within(moved, kMaxWorldExtent<S>), kBadPosition);
-  require<Fault::IllegalBody>(within(turned, kMaxAngle<S>), kBadAngle);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(moved, kMaxWorldExtent<S>), kBadPosition);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(turned, kMaxAngle<S>), kBadAngle);
 
-  holdPosition(dt, kMaxWorldExtent<S>);
+  held_ |= holdPosition(dt, kMaxWorldExtent<S>);
 }
 
 template <Scalar S>
@@ -313,14 +335,15 @@ void Body<S>::updateVelocity(const Vector<S>& gravity, S damping, S dt) {
   if (!isDynamic()) return;
   const char* reason = cannotStep();
   if (reason != nullptr) fail<Fault::IllegalBody>(reason);
-  require<Fault::IllegalBody>(
-      within(gravity, kMaxAcceleration<S>) && within(damping, S(1)) && within(dt, kMaxTimeStep<S>),
-      kBadVelocity);
+  require<Fault::IllegalBody>(within(dt, kMaxTimeStep<S>), kBadTimeStep);
+  require<Fault::IllegalBody>(within(gravity, kMaxAcceleration<S>) && damping >= S(0) && damping <= S(1),
+                              kBadVelocity);
   const Motion motion = accelerated(gravity, damping, dt);
-  require<Fault::IllegalBody>(within(motion.velocity, kMaxSpeed<S>), kBadVelocity);
-  require<Fault::IllegalBody>(within(motion.angularVelocity, kMaxAngularSpeed<S>), kBadAngularVelocity);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(motion.velocity, kMaxSpeed<S>), kBadVelocity);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(motion.angularVelocity, kMaxAngularSpeed<S>),
+                              kBadAngularVelocity);
 
-  holdVelocity(motion);
+  held_ |= holdVelocity(motion);
   force_ = {};
   torque_ = S(0);
 }
@@ -331,7 +354,7 @@ S Body<S>::kineticEnergy() const {
   const auto square = [](S x) { return toScaled(x) * toScaled(x); };
   const Scaled<S> twice =
       toScaled(mass_) * (square(velocity_.x) + square(velocity_.y)) + moment_ * square(angularVelocity_);
-  return toScalar<S>(twice * toScaled(ratio<S>(1, 2)));
+  return saturated<S>(twice * toScaled(ratio<S>(1, 2)));
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

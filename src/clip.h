@@ -7,10 +7,10 @@
 
 namespace samestep {
 
-/// An edge that faces the other shape, without its radius. MIS: Edge
+/// An edge that faces the other shape, in the world, without its radius. MIS: Edge
 template <Scalar S>
 struct SupportEdge {
-  Vector<S> a, b;  ///< Counter-clockwise, from the reference point of the pair.
+  Vector<S> a, b;  ///< Counter-clockwise.
   int indexA, indexB;
 };
 
@@ -18,13 +18,12 @@ struct SupportEdge {
 /// whose normal is nearer to n. MIS: supportEdgeForPoly, supportEdgeForSegment
 template <Scalar S>
 SupportEdge<S> supportEdge(const SupportShape<S>& shape, const Vector<S>& n) {
+  const Plane<S>* planes = shape.planes;
   const int i1 = shape.farthest(n);
   const int i0 = (i1 == 0 ? shape.count : i1) - 1;
   const int i2 = i1 + 1 < shape.count ? i1 + 1 : 0;
-  if (exactDot(n, shape.planes[i1].n) > exactDot(n, shape.planes[i2].n)) {
-    return {shape.point(i0), shape.point(i1), i0, i1};
-  }
-  return {shape.point(i1), shape.point(i2), i1, i2};
+  if (exactDot(n, planes[i1].n) > exactDot(n, planes[i2].n)) return {planes[i0].v0, planes[i1].v0, i0, i1};
+  return {planes[i1].v0, planes[i2].v0, i1, i2};
 }
 
 /// The point of an edge at part / whole of the way, held within the edge; its ends exactly.
@@ -36,27 +35,24 @@ Vector<S> pointAlong(const SupportEdge<S>& edge, S part, S whole) {
   }
   if (part <= S(0)) return edge.a;
   if (part >= whole) return edge.b;
-  return lerp(edge.a, edge.b, part / whole);
+  return edge.a + (edge.b - edge.a) * (part / whole);
 }
 
 /// Projects the ends of two facing edges on each other along the normal and keeps the places where the
-/// rounded edges overlap: at most two. The surfaces must be no farther apart than their radii. MIS:
-/// contactPoints
+/// rounded edges overlap: at most two. Only differences of points count. MIS: contactPoints
 template <Scalar S>
-void clip(const SupportPair<S>& pair, S radiusA, S radiusB, const Vector<S>& n, CollisionInfo<S>& info) {
-  const SupportEdge<S> e1 = supportEdge(pair.a, n), e2 = supportEdge(pair.b, -n);
-  const S a1 = cross(e1.a, n), b1 = cross(e1.b, n), a2 = cross(e2.a, n), b2 = cross(e2.b, n);
-  const S whole1 = b1 - a1, whole2 = b2 - a2;
+void clip(const SupportEdge<S>& e1, S radius1, const SupportEdge<S>& e2, S radius2, const Vector<S>& n,
+          CollisionInfo<S>& info) {
+  const S whole1 = cross(e1.b - e1.a, n), whole2 = cross(e2.b - e2.a, n), starts = cross(e2.a - e1.a, n);
   info.normal = n;
-  const auto meet = [&](S at1, S at2, int index1, int index2) {
-    const Vector<S> p1 = mulAdd(n, radiusA, pointAlong(e1, at2 - a1, whole1));
-    const Vector<S> p2 = mulAdd(n, -radiusB, pointAlong(e2, at1 - a2, whole2));
+  const auto meet = [&](S part1, S part2, int index1, int index2) {
+    const Vector<S> p1 = pointAlong(e1, part1, whole1) + n * radius1;
+    const Vector<S> p2 = pointAlong(e2, part2, whole2) - n * radius2;
     if (dot(p2 - p1, n) > S(0)) return;
-    const auto hash = static_cast<std::uint32_t>(index1) << 16 | static_cast<std::uint32_t>(index2);
-    info.push(p1 + pair.a.reference, p2 + pair.b.reference, hash);
+    info.push(p1, p2, static_cast<std::uint32_t>(index1) << 16 | static_cast<std::uint32_t>(index2));
   };
-  meet(a1, b2, e1.indexA, e2.indexB);
-  meet(b1, a2, e1.indexB, e2.indexA);
+  meet(cross(e2.b - e1.a, n), -starts, e1.indexA, e2.indexB);
+  meet(starts, cross(e1.b - e2.a, n), e1.indexB, e2.indexA);
 }
 
 }  // namespace samestep

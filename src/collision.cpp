@@ -4,7 +4,9 @@
 #include "clip.h"
 #include "collision_functions.h"
 #include "gjk.h"
+#include "shape_edges.h"
 #include "support.h"
+#include "support_faces.h"
 
 namespace samestep {
 namespace {
@@ -15,7 +17,7 @@ void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionI
   const S reach = a.radius + b.radius;
   if (exactDot(delta, delta) >= exactProduct(reach, reach)) return;
   info.normal = delta == Vector<S>() ? Vector<S>(S(1), S(0)) : normalize(delta);
-  info.push(mulAdd(info.normal, a.radius, a.center.v0), mulAdd(info.normal, -b.radius, b.center.v0), 0);
+  info.push(a.center.v0 + info.normal * a.radius, b.center.v0 - info.normal * b.radius, 0);
 }
 
 /// The tangents of a segment towards its neighbours, in the world; zero without one.
@@ -46,7 +48,7 @@ void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, c
   const Vector<S> n = delta == Vector<S>() ? fallback : normalize(delta);
   if (!endMayTouch(other, nearest.vertex, -n)) return;
   info.normal = n;
-  info.push(mulAdd(n, circle.radius, circle.center.v0), mulAdd(n, -other.radius, corner), 0);
+  info.push(circle.center.v0 + n * circle.radius, corner - n * other.radius, 0);
 }
 
 /// A circle and a segment or polygon. One look at the edges finds what GJK and EPA would.
@@ -60,24 +62,53 @@ void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, Co
   if (nearest.distance == reach && other.type == ShapeType::segment) return;
   const Vector<S> n = -other.planes[nearest.edge].n;
   info.normal = n;
-  info.push(mulAdd(n, circle.radius, c), mulAdd(n, nearest.distance - other.radius, c), 0);
+  info.push(c + n * circle.radius, c + n * (nearest.distance - other.radius), 0);
 }
 
-/// Segments and polygons, in any order.
+/// What two shapes with edges touch in, if they are near enough and the ends of segments allow it.
 template <Scalar S>
-void edgesToEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
-                  CollisionStats* stats) {
-  const Vector<S> reference = a.planes[0].v0;
-  const SupportPair<S> pair{{a, reference}, {b, reference}};
+void touch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest,
+           CollisionInfo<S>& info) {
+  info.id = closest.id;
+  if (closest.distance > a.radius + b.radius) return;
+  if (!endMayTouch(a, closest.vertexA, closest.normal)) return;
+  if (!endMayTouch(b, closest.vertexB, -closest.normal)) return;
+  const Vector<S> n = closest.normal;
+  clip(supportEdge(SupportShape<S>(a), n), a.radius, supportEdge(SupportShape<S>(b), -n), b.radius, n, info);
+}
+
+template <Scalar S>
+ClosestPoints<S> closestPoints(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
+                               CollisionStats* stats) {
   // Across the line between the middles of the boxes, twice as long.
   const Vector<S> axis = perp(Vector<S>((a.box.left - b.box.left) + (a.box.right - b.box.right),
                                         (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
-  const ClosestPoints<S> closest = gjk(pair, info.id, axis, stats);
-  info.id = closest.id;
-  if (closest.distance > a.radius + b.radius) return;
-  if (!endMayTouch(a, closest.vertexA, closest.normal) || !endMayTouch(b, closest.vertexB, -closest.normal))
-    return;
-  clip(pair, a.radius, b.radius, closest.normal, info);
+  return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);
+}
+
+/// Up to here, looking at every vertex for every face is faster than searching.
+constexpr int kMaxFacePairs = 64;
+
+/// Segments and polygons, but for two segments, which have no face towards each other's ends.
+template <Scalar S>
+void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
+                 CollisionStats* stats) {
+  const CollisionId start = info.id;
+  if (a.count * b.count <= kMaxFacePairs) {
+    const S reach = a.radius + b.radius;
+    const FaceAxis<S> axis = bestFace(a, b, reach, start);
+    info.id = axis.id();
+    if (axis.separation > reach) return;
+    if (axis.separation <= S(0) || facesVertex(a, b, axis)) {
+      const Vector<S> normal = axis.onB ? -b.planes[axis.face].n : a.planes[axis.face].n;
+      touch(a, b,
+            {normal, axis.separation, axis.id(), axis.onB ? axis.vertex : -1, axis.onB ? -1 : axis.vertex},
+            info);
+      return;
+    }
+    // Rounded corners near each other.
+  }
+  touch(a, b, closestPoints(a, b, start, stats), info);
 }
 
 /// The same contact with the shapes exchanged.
@@ -96,8 +127,10 @@ template <Scalar S>
 void collideSorted(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
                    CollisionStats* stats) {
   require<Fault::CollisionError>(a.type <= b.type);
-  if (a.type != ShapeType::circle) {
-    edgesToEdges(a, b, info, stats);
+  if (b.type == ShapeType::segment && a.type == ShapeType::segment) {
+    touch(a, b, closestPoints(a, b, info.id, stats), info);
+  } else if (a.type != ShapeType::circle) {
+    edgesToPoly(a, b, info, stats);
   } else if (b.type == ShapeType::circle) {
     circleToCircle(a, b, info);
   } else {

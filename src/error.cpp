@@ -106,6 +106,8 @@ const char* message(Fault fault) {
       return "No callback is registered under this number.";
     case Fault::ForeignWorld:
       return "The saved state belongs to another kind of world.";
+    case Fault::MalformedBytes:
+      return "These bytes are not what they should be.";
   }
   return "Unknown fault.";
 }

@@ -3,6 +3,8 @@
 
 #include <samestep/error.h>
 
+#include "require_ieee.h"
+
 namespace samestep {
 namespace {
 

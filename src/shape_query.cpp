@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/shape.h>
 
-#include "support.h"
+#include "shape_edges.h"
 
 namespace samestep {
 namespace {
@@ -12,7 +12,7 @@ PointQueryInfo<S> fromCore(const Vector<S>& core, const Vector<S>& away, S radiu
                            const Vector<S>& fallback) {
   const S apart = length(away);
   const Vector<S> direction = apart > kMagicEpsilon<S> ? normalize(away) : fallback;
-  return {mulAdd(direction, radius, core), apart - radius, direction};
+  return {core + direction * radius, apart - radius, direction};
 }
 
 template <Scalar S>
@@ -25,8 +25,8 @@ PointQueryInfo<S> queryEdges(const PlacedShape<S>& shape, const Vector<S>& point
   }
   const bool onSegment = shape.type == ShapeType::segment && nearest.distance <= kMagicEpsilon<S>;
   const Vector<S> gradient = onSegment ? shape.planes[1].n : edge.n;
-  const Vector<S> core = mulAdd(edge.n, -nearest.distance, point);
-  return {mulAdd(gradient, shape.radius, core), nearest.distance - shape.radius, gradient};
+  const Vector<S> core = point - edge.n * nearest.distance;
+  return {core + gradient * shape.radius, nearest.distance - shape.radius, gradient};
 }
 
 /// A circle of `moving` metres going from a to b against a circle at rest: the first touch before `best`.
@@ -44,9 +44,9 @@ void touchCircle(const Vector<S>& center, S radius, S moving, const Vector<S>& a
   if (along < S(0) || along > whole || whole == S(0)) return;
   const S alpha = along / whole;
   if (best.hit && alpha >= best.alpha) return;
-  const Vector<S> touch = mulAdd(way, along, start);
+  const Vector<S> touch = start + way * along;
   const Vector<S> normal = touch == Vector<S>() ? -way : normalize(touch);
-  best = {true, alpha, mulAdd(normal, radius, center), normal};
+  best = {true, alpha, center + normal * radius, normal};
 }
 
 /// The part of the way from `from` metres above a line to `to` metres above it at which it is met: 0 to 1.
@@ -59,10 +59,10 @@ S meetingAt(S from, S to) {
 template <Scalar S>
 SegmentQueryInfo<S> faceHit(const Vector<S>& a, const Vector<S>& b, S alpha, const Vector<S>& origin,
                             const Vector<S>& normal, S radius) {
-  const Vector<S> center = lerp(a, b, alpha);
+  const Vector<S> center = a + (b - a) * alpha;
   // Onto the face, whatever alpha lost by rounding over a long way.
   const S above = dot(normal, center - origin) - radius;
-  return {true, alpha, mulAdd(normal, -above, center), normal};
+  return {true, alpha, center - normal * above, normal};
 }
 
 template <Scalar S>

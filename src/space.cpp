@@ -5,6 +5,7 @@
 #include <atomic>
 #include <tuple>
 
+#include "require_ieee.h"
 #include "space_impl.h"
 #include "state_hash.h"
 
@@ -16,6 +17,10 @@ std::uint32_t nextSerial() {
   static std::atomic<std::uint32_t> last{0};
   return ++last;
 }
+
+constexpr const char* kReindexLocked =
+    "You cannot manually reindex objects while the space is locked. Wait until the current query or step is "
+    "complete.";
 
 template <Scalar S>
 void requireIn(S value, S low, S high) {
@@ -142,6 +147,11 @@ void Space<S>::remove(BodyId id) {
   require<Fault::MainStaticBody>(id != state_.staticBody);
   require<Fault::BodyHasShapes>(firstShape(id) == Impl::kNone);
 
+  eraseBody(id);
+}
+
+template <Scalar S>
+void Space<S>::eraseBody(BodyId id) {
   state_.bodies.erase(id);
   impl_->poses[id.index] = {};
 }
@@ -151,8 +161,10 @@ void Space<S>::removeWithShapes(BodyId id) {
   requireUnlocked();
   require<Fault::BodyNotFound>(contains(id));
   require<Fault::MainStaticBody>(id != state_.staticBody);
-  while (firstShape(id) != Impl::kNone) remove(state_.shapes.idAt(firstShape(id)));
-  remove(id);
+  LockGuard guard(*this);
+  while (firstShape(id) != Impl::kNone) eraseShape(state_.shapes.idAt(firstShape(id)));
+  eraseBody(id);
+  guard.finish();
 }
 
 template <Scalar S>
@@ -175,10 +187,10 @@ void Space<S>::setType(BodyId id, BodyType type) {
                                  "The designated static body of a space stays static.");
   Body<S> changed = kept.detached();
   changed.setType(type);
+  for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
+    checkShape(state_.shapes.valueAt(i), changed);
+  }
   if (type == BodyType::dynamicBody) {
-    for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
-      checkShape(state_.shapes.valueAt(i), changed);
-    }
     const MassProperties<S> mass = massOfShapes(id, {}, nullptr);
     if (mass.mass > S(0)) changed.setMassProperties(mass);
   }
@@ -272,13 +284,21 @@ template <Scalar S>
 void Space<S>::remove(ShapeId id) {
   requireUnlocked();
   require<Fault::ShapeNotFound>(contains(id));
+
+  LockGuard guard(*this);
+  eraseShape(id);
+  guard.finish();
+}
+
+template <Scalar S>
+void Space<S>::eraseShape(ShapeId id) {
   ensureCache();
   const BodyId bodyId = state_.shapes.valueAt(id.index).body();
+  dropPairs(bodyId, id);
+
   Body<S>& holder = state_.bodies.valueAt(bodyId.index);
   const bool hadMass = state_.shapes.valueAt(id.index).mass() > S(0);
   if (holder.isDynamic() && hadMass) holder.setMassProperties(massOfShapes(bodyId, id, nullptr));
-
-  dropPairs(bodyId, id);
   impl_->dropBox(id.index);
   impl_->unlinkShape(bodyId.index, id.index);
   state_.shapes.erase(id);
@@ -344,20 +364,20 @@ BB<S> Space<S>::boundingBox(ShapeId id) {
 
 template <Scalar S>
 void Space<S>::reindexStatic() {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   refreshTouched();
 }
 
 template <Scalar S>
 void Space<S>::reindexShape(ShapeId id) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   require<Fault::ShapeNotFound>(contains(id));
   refreshTouched();
 }
 
 template <Scalar S>
 void Space<S>::reindexShapesForBody(BodyId id) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   require<Fault::BodyNotFound>(contains(id));
   refreshTouched();
 }
@@ -369,19 +389,32 @@ void Space<S>::unlock(bool runPostStep) {
   require<Fault::SpaceLockUnderflow>(locked_ > 0);
   --locked_;
   if (!runPostStep || locked_ > 0 || impl_->runningPostStep) return;
+  impl_->runPostStep(*this);
+}
+
+template <Scalar S>
+void Space<S>::Impl::runPostStep(Space& space) {
+  // After a callback that throws the later ones wait for the next time.
+  struct Running {
+    Impl& impl;
+    std::size_t done = 0;
+    explicit Running(Impl& of) : impl(of) { impl.runningPostStep = true; }
+    ~Running() {
+      impl.postStep.erase(impl.postStep.begin(), impl.postStep.begin() + static_cast<std::ptrdiff_t>(done));
+      impl.runningPostStep = false;
+    }
+  } running(*this);
   // A callback may add callbacks: they run in the same go.
-  impl_->runningPostStep = true;
-  for (std::size_t i = 0; i < impl_->postStep.size(); ++i) {
-    const typename Impl::PostStep callback = impl_->postStep[i];
-    impl_->postStep[i].function = nullptr;
-    callback.function(*this, callback.key, callback.data);
+  while (running.done < postStep.size()) {
+    const PostStep callback = postStep[running.done];
+    postStep[running.done++].function = nullptr;
+    callback.function(space, callback.key, callback.data);
   }
-  impl_->postStep.clear();
-  impl_->runningPostStep = false;
 }
 
 template <Scalar S>
 bool Space<S>::addPostStepCallback(PostStepFunc function, std::uint64_t key, void* data) {
+  require<Fault::ValueOutOfRange>(function != nullptr);
   for (const typename Impl::PostStep& waiting : impl_->postStep) {
     if (waiting.function != nullptr && waiting.key == key) return false;
   }
@@ -395,18 +428,21 @@ bool Space<S>::addPostStepCallback(PostStepFunc function, std::uint64_t key, voi
 
 template <Scalar S>
 void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>& handler) {
+  requireUnlocked();
   require<Fault::ValueOutOfRange>(number != 0);
   Impl::set(impl_->handlers, typename Impl::RegisteredHandler{number, handler});
 }
 
 template <Scalar S>
 void Space<S>::registerPositionFunc(CallbackNumber number, PositionFunc function, void* data) {
+  requireUnlocked();
   require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
   Impl::set(impl_->positionFuncs, {number, function, data});
 }
 
 template <Scalar S>
 void Space<S>::registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data) {
+  requireUnlocked();
   require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
   Impl::set(impl_->velocityFuncs, {number, function, data});
 }
@@ -470,6 +506,7 @@ void Space<S>::restore(const SavedSpace<S>& saved) {
 template <Scalar S>
 void Space<S>::adopt(const WorldState<S>& state) {
   requireUnlocked();
+  require<Fault::ForeignWorld>(state.bodies.contains(state.staticBody), "Nothing was saved there.");
   for (const HandlerBinding& binding : state.handlers) {
     require<Fault::MissingCallback>(Impl::find(impl_->handlers, binding.number) != nullptr);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a Space computes from its state and may forget at any time: lists of shapes, placed geometry, trees.
+#include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {
@@ -138,6 +139,7 @@ void Space<S>::placeShapesOf(std::uint32_t bodyIndex) const {
 template <Scalar S>
 void Space<S>::refreshTouched() {
   ensureCache();
+  if (impl_->keepPlaced) return;
   for (const std::uint32_t body : impl_->touched) {
     if (state_.bodies.aliveAt(body)) placeShapesOf(body);
   }
@@ -153,7 +155,6 @@ std::span<const std::uint32_t> Space<S>::threadOf(BodyId id) {
     const auto eachEnd = [&](auto&& visit) {
       for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
         const Pair<S>& pair = state_.pairs[i];
-        if (!touching(pair)) continue;
         visit(state_.shapes.valueAt(pair.a.index).body().index, i);
         visit(state_.shapes.valueAt(pair.b.index).body().index, i);
       }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Who is told of collisions: handlers, wildcards, separations.
+#include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {
@@ -155,6 +156,7 @@ void Space<S>::postSolve() {
   }
 }
 
+/// Under a lock: what the callbacks want to add or remove has to wait.
 template <Scalar S>
 void Space<S>::dropPairs(BodyId body, ShapeId shape) {
   const auto meant = [&](const Pair<S>& pair) {
@@ -163,7 +165,6 @@ void Space<S>::dropPairs(BodyId body, ShapeId shape) {
     };
     return is(pair.a) || is(pair.b);
   };
-  LockGuard guard(*this);
   for (Pair<S>& pair : state_.pairs) {
     if (!meant(pair) || pair.state == ArbiterState::apart || pair.state == ArbiterState::cached) continue;
     pair.state = ArbiterState::cached;
@@ -171,7 +172,6 @@ void Space<S>::dropPairs(BodyId body, ShapeId shape) {
   }
   std::erase_if(state_.pairs, meant);
   impl_->threadsKnown = false;
-  guard.finish();
 }
 
 template <Scalar S>
@@ -180,7 +180,9 @@ void Space<S>::filterArbiters(BodyId body, ShapeId shape) {
   require<Fault::BodyNotFound>(contains(body));
   require<Fault::ShapeNotFound>(!shape.valid() ||
                                 (contains(shape) && state_.shapes.valueAt(shape.index).body() == body));
+  LockGuard guard(*this);
   dropPairs(body, shape);
+  guard.finish();
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

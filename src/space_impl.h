@@ -64,6 +64,7 @@ struct Space<S>::Impl {
   std::vector<PlacedShape<S>> placed;
   std::vector<std::uint32_t> planeOffset;
   std::vector<Plane<S>> planes;
+  bool keepPlaced = false;
   // Bodies that may have been moved by hand since the last step, each once.
   std::vector<std::uint32_t> touched;
   std::vector<std::uint8_t> isTouched;
@@ -107,6 +108,21 @@ struct Space<S>::Impl {
     entries.push_back(entry);
   }
 
+  /// While it lives, queries see the shapes where the step placed them, whatever callbacks have moved: a
+  /// question asked within a step must not change its result.
+  class KeepPlaced {
+   public:
+    explicit KeepPlaced(Impl& impl) : impl_(impl) { impl_.keepPlaced = true; }
+    ~KeepPlaced() { end(); }
+    KeepPlaced(const KeepPlaced&) = delete;
+    KeepPlaced& operator=(const KeepPlaced&) = delete;
+    void end() { impl_.keepPlaced = false; }
+
+   private:
+    Impl& impl_;
+  };
+
+  void runPostStep(Space& space);
   void growBodies(std::uint32_t slots);
   void growShapes(std::uint32_t slots);
   void touch(std::uint32_t body);

@@ -2,6 +2,7 @@
 // Questions about the world as it stands, answered by rising shape id.
 #include <algorithm>
 
+#include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {

@@ -2,21 +2,26 @@
 // The step, stage by stage.
 #include <algorithm>
 
+#include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {
 
 template <Scalar S>
 void Space<S>::step(S dt) {
+  requireUnlocked();
+  if (dt == S(0)) return;
   checkStep(dt);
 
   const S before = state_.timeStep;
   state_.timeStep = dt;
   ++state_.stamp;
   impl_->held.assign(state_.bodies.slots(), 0);
-  impl_->threadsKnown = false;
   {
     LockGuard guard(*this);
+    // What position functions ask about is the world before any of them moved a body.
+    if (!impl_->positionFuncs.empty()) refreshTouched();
+    typename Impl::KeepPlaced keep(*impl_);
     integratePositions(dt);
     updateShapes();
     findPairs();
@@ -27,6 +32,7 @@ void Space<S>::step(S dt) {
     solve(before == S(0) ? S(0) : dt / before);
     postSolve();
     listRangeEvents();
+    keep.end();
     guard.finish();
   }
 }
@@ -38,7 +44,6 @@ void Space<S>::endStage(Stage stage) {
 
 template <Scalar S>
 void Space<S>::checkStep(S dt) const {
-  requireUnlocked();
   require<Fault::ValueOutOfRange>(dt > S(0) && dt <= kMaxTimeStep<S>);
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
@@ -59,7 +64,10 @@ void Space<S>::integratePositions(S dt) {
     if (body.type() == BodyType::staticBody) continue;
     if (body.positionFunc() != 0) [[unlikely]] {
       const auto* entry = Impl::find(impl_->positionFuncs, body.positionFunc());
-      entry->function(body, dt, entry->data);
+      {
+        const typename Body<S>::WithinStep within(body, impl_->held[i]);
+        entry->function(body, dt, entry->data);
+      }
       // Whatever it did, the body is held within the world.
       impl_->held[i] |= body.holdPosition(S(0), worldExtent());
     } else {
@@ -141,6 +149,7 @@ void Space<S>::findPairs() {
   }
   while (old < pairs.size()) keepTouched(pairs[old]);
   if (copying) pairs.swap(impl.nextPairs);
+  impl.threadsKnown = false;
   endStage(Stage::findPairs);
 }
 
@@ -209,6 +218,15 @@ bool Space<S>::applyCollision(Pair<S>& pair, const CollisionInfo<S>& info) {
   return askHandlers(pair);
 }
 
+/// Whether both bodies are static: such a pair stays as it is.
+template <Scalar S>
+bool Space<S>::rests(const Pair<S>& pair) const {
+  const auto isStatic = [&](ShapeId id) {
+    return state_.bodies.valueAt(state_.shapes.valueAt(id.index).body().index).type() == BodyType::staticBody;
+  };
+  return isStatic(pair.a) && isStatic(pair.b);
+}
+
 /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
 /// MIS: spaceArbiterSetFilter
 template <Scalar S>
@@ -217,7 +235,7 @@ void Space<S>::expirePairs() {
   bool dropped = false;
   for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
     Pair<S>& pair = state_.pairs[i];
-    if (pair.state == ArbiterState::apart || pair.stamp == state_.stamp) continue;
+    if (pair.state == ArbiterState::apart || pair.stamp == state_.stamp || rests(pair)) continue;
     if (pair.state != ArbiterState::cached) {
       pair.state = ArbiterState::cached;
       callSeparate(pair, false);
@@ -240,9 +258,19 @@ void Space<S>::expirePairs() {
       ++kept;
     }
     state_.pairs.resize(kept);
+    impl.threadsKnown = false;
   }
   endStage(Stage::collide);
 }
+
+namespace {
+
+template <Scalar S>
+SolverBody<S> velocitiesOf(const Body<S>& body) {
+  return {body.velocity(), body.angularVelocity(), body.velocityBias(), body.angularVelocityBias()};
+}
+
+}  // namespace
 
 template <Scalar S>
 void Space<S>::preStep(S dt) {
@@ -258,6 +286,7 @@ void Space<S>::preStep(S dt) {
     if (index == Impl::kNone) {
       index = static_cast<std::uint32_t>(impl.solverBodies.size());
       impl.solverBodies.push_back(body);
+      impl.solver.bodies.push_back(velocitiesOf(state_.bodies.valueAt(body)));
     }
     return index;
   };
@@ -278,9 +307,15 @@ void Space<S>::integrateVelocities(S dt) {
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
     Body<S>& body = state_.bodies.valueAt(i);
-    if (body.velocityFunc() != 0) [[unlikely]] {
+    if (body.type() == BodyType::staticBody) {
+      // Nothing moves it, and no function is asked to.
+    } else if (body.velocityFunc() != 0) [[unlikely]] {
       const auto* entry = Impl::find(impl_->velocityFuncs, body.velocityFunc());
-      entry->function(body, pull, kept, dt, entry->data);
+      {
+        const typename Body<S>::WithinStep within(body, impl_->held[i]);
+        entry->function(body, pull, kept, dt, entry->data);
+      }
+      impl_->touch(i);
     } else if (body.isDynamic()) {
       impl_->held[i] |= body.holdVelocity(body.accelerated(pull, kept, dt));
     }
@@ -294,10 +329,8 @@ template <Scalar S>
 void Space<S>::solve(S dtCoefficient) {
   Impl& impl = *impl_;
   ContactSolver<S>& solver = impl.solver;
-  for (const std::uint32_t index : impl.solverBodies) {
-    const Body<S>& body = state_.bodies.valueAt(index);
-    solver.bodies.push_back(
-        {body.velocity_, body.angularVelocity_, body.velocityBias_, body.angularVelocityBias_});
+  for (std::size_t i = 0; i < impl.solverBodies.size(); ++i) {
+    solver.bodies[i] = velocitiesOf(state_.bodies.valueAt(impl.solverBodies[i]));
   }
   std::size_t next = 0;
   for (const Pair<S>& pair : state_.pairs) {

@@ -5,6 +5,7 @@
 #include <samestep/brute_force_index.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "support/allocation_count.h"
@@ -338,6 +339,29 @@ TYPED_TEST(BBTreeTest, BoxesBeyondTheGridAreStillCandidates) {
   Keys keys;
   tree.collectAlong({S(0), S(0)}, {S(far), S(far)}, S(0), keys);
   EXPECT_THAT(keys, ElementsAre(0, 1));
+}
+
+/// Where the scalar has none, the edge of the grid.
+template <Scalar S>
+S notANumber() {
+  if constexpr (requires { std::numeric_limits<S>::quiet_NaN(); }) {
+    return std::numeric_limits<S>::quiet_NaN();
+  } else {
+    return S(1 << 20);
+  }
+}
+
+// The Space refuses what is not a number; an index of one's own must not crash on it.
+TYPED_TEST(BBTreeTest, ABoxOfWhatIsNoNumberOverlapsEverything) {
+  using S = TypeParam;
+  const S edge = S(1 << 20);
+  const S odd = notANumber<S>();
+  BBTree<S> tree;
+  tree.update(0, {-edge, -edge, odd, odd});
+  tree.update(1, box<S>(3, 3, 4, 4));
+  tree.updatePairs();
+
+  EXPECT_THAT(tree.pairs(), ElementsAre(KeyPair{0, 1}));
 }
 
 TYPED_TEST(BBTreeTest, QueriesHoldEveryHitByRisingKey) {

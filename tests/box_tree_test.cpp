@@ -122,7 +122,7 @@ TEST(BoxTreeTest, RebuildGivesTheLeastHeightAndTheSameAnswers) {
   EXPECT_EQ(found(tree, area), before);
 }
 
-// A hair's breadth of nodes as high as the stack is deep, by a tree that rebuilds itself before that.
+// Boxes in boxes, each twice as large: the worst that greedy placing can do.
 TEST(BoxTreeTest, NeverGetsHigherThanItsLimit) {
   BoxTree tree;
   std::uint32_t highest = 0;

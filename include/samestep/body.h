@@ -123,7 +123,7 @@ class Body {
   /// MIS: bodySetPosition
   void setPosition(const Vector<S>& position);
   /// Moves the centre of mass within the body; the body's origin stays in place.
-  /// @throws IllegalBody
+  /// @throws IllegalBody farther than 2^8 m from the origin
   /// MIS: bodySetCenterOfMass
   void setCenterOfMass(const Vector<S>& center);
   /// @throws IllegalBody above the speed limit, or for a moving static body
@@ -167,13 +167,14 @@ class Body {
   /// @throws IllegalBody where the sum is out of range
   void applyForce(const Vector<S>& force, const Vector<S>& worldPoint);
 
-  /// Moves by its velocities for dt seconds, and forgets the bias velocities.
-  /// @throws IllegalBody where that leaves the world
-  /// MIS: bodyUpdatePosition
+  /// Moves by its velocities for dt seconds, in [-1, 1], and forgets the bias velocities.
+  /// @throws IllegalBody for dt, or where that leaves the world; in a step's position function it is held
+  /// there MIS: bodyUpdatePosition
   void updatePosition(S dt);
-  /// Gravity, force and torque for dt seconds; clears force and torque. Does nothing to a body that is not
-  /// dynamic.
-  /// @throws IllegalBody for a body without mass, or beyond the speed limits
+  /// Gravity, force and torque for dt seconds, in [-1, 1]; clears force and torque. Does nothing to a body
+  /// that is not dynamic.
+  /// @throws IllegalBody for a body without mass, an argument out of range, or beyond the speed limits; in a
+  ///         step's velocity function it is held at them
   /// MIS: bodyUpdateVelocity
   void updateVelocity(const Vector<S>& gravity, S dt) { updateVelocity(gravity, S(1), dt); }
   /// The same with the velocities first multiplied by `damping`, in [0, 1].
@@ -211,6 +212,8 @@ class Body {
   }
   /// Computes what follows from the fields.
   void derive();
+  /// Whether the record could have been made by the functions of this library: for what was read from outside.
+  bool wellFormed() const;
 
  private:
   friend class Space<S>;
@@ -225,6 +228,25 @@ class Body {
   const char* cannotStep() const;
   /// Takes the velocities, held at the limits; says what was held.
   std::uint8_t holdVelocity(const Motion& motion);
+  /// While it lives, updatePosition and updateVelocity hold what leaves its range, and note it, instead of
+  /// throwing: for the functions a step calls.
+  class WithinStep {
+   public:
+    WithinStep(Body& body, std::uint8_t& held) : body_(body), held_(held) {
+      body_.stepping_ = 1;
+      body_.held_ = 0;
+    }
+    ~WithinStep() {
+      body_.stepping_ = 0;
+      held_ |= body_.held_;
+    }
+    WithinStep(const WithinStep&) = delete;
+    WithinStep& operator=(const WithinStep&) = delete;
+
+   private:
+    Body& body_;
+    std::uint8_t& held_;
+  };
   /// Moves, held within `extent` metres of the origin; says what was held.
   std::uint8_t holdPosition(S dt, S extent);
 
@@ -252,7 +274,9 @@ class Body {
   std::uint32_t owner_ = 0;
   BodyType type_ = BodyType::dynamicBody;
   std::uint8_t rotates_ = 1;
-  std::uint16_t unused_ = 0;
+  // Of a call from within a step.
+  std::uint8_t stepping_ = 0;
+  std::uint8_t held_ = 0;
 };
 
 #ifndef SAMESTEP_FIXED_ONLY

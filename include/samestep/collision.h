@@ -52,8 +52,9 @@ struct CollisionInfo {
 /// meets. A pure function: same arguments, same answer.
 ///
 /// Fixed: moving both shapes by the same vector moves the points by it and changes nothing else. Exchanging
-/// the shapes turns the normal round and exchanges the points; two points then come in the other order. The
-/// answer is the same for every start id unless several features are equally near.
+/// the shapes turns the normal round and exchanges the points; two points then come in the other order. (But
+/// where faces lie flat on each other, to 2^-24 m, the normal is that of the first polygon's, or of the
+/// segment's.) The answer is the same for every start id unless several features are equally near.
 ///
 /// The normal is a unit vector always. Where the geometry gives none: two centres in one place (1, 0); the
 /// centre of a circle on a segment, the segment's normal; two vertices in one place, the normal of an edge.

@@ -57,6 +57,7 @@ enum class Fault : std::uint8_t {
   BodyHasShapes,    ///< Removing a body that still has shapes.
   MissingCallback,  ///< A callback number without a registered function.
   ForeignWorld,     ///< A saved state of another kind of world.
+  MalformedBytes,   ///< Bytes from outside that are not what they should be; see FormatError.
 };
 
 /// The sentence a user reads: the MIS's own where it has one.
@@ -129,6 +130,18 @@ using TooManyVertices = FaultError<Fault::TooManyVertices>;
 using BodyHasShapes = FaultError<Fault::BodyHasShapes>;
 using MissingCallback = FaultError<Fault::MissingCallback>;
 using ForeignWorld = FaultError<Fault::ForeignWorld>;
+using MalformedBytes = FaultError<Fault::MalformedBytes>;
+
+/// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.
+class FormatError : public MalformedBytes {
+ public:
+  FormatError(std::uint64_t offset, const char* reason) : MalformedBytes(reason), offset_(offset) {}
+  /// Of the first byte of what is wrong.
+  std::uint64_t offset() const { return offset_; }
+
+ private:
+  std::uint64_t offset_;
+};
 
 [[noreturn]] void failWithoutExceptions(Fault fault, const char* text);
 
@@ -153,6 +166,17 @@ template <Fault F>
 [[gnu::always_inline]] inline constexpr void require(bool condition, const char* text) {
   if (!condition) [[unlikely]]
     fail<F>(text);
+}
+
+/// Throws a FormatError, as fail does.
+/// @param reason  lives for ever
+[[noreturn]] inline void failFormat(std::uint64_t offset, const char* reason) {
+#if defined(__cpp_exceptions)
+  throw FormatError(offset, reason);
+#else
+  static_cast<void>(offset);
+  failWithoutExceptions(Fault::MalformedBytes, reason);
+#endif
 }
 
 /// Called with the fault before a build without exceptions aborts. Default: none.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <limits>
+
 #include <samestep/scalar.h>
 #include <samestep/vector.h>
 
@@ -40,6 +42,9 @@ inline constexpr S kMaxAcceleration = S(1 << 15);
 /// Of each component of a force, N, and of a torque, N m.
 template <Scalar S>
 inline constexpr S kMaxForce = S(1 << 30);
+/// How far the centre of mass may lie from the body's origin, along each axis, metres.
+template <Scalar S>
+inline constexpr S kMaxCenterOfMass = S(1 << 8);
 /// Seconds in one step.
 template <Scalar S>
 inline constexpr S kMaxTimeStep = S(1);
@@ -52,6 +57,18 @@ template <Scalar S>
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr bool within(const Vector<S>& v, S limit) {
   return within(v.x, limit) && within(v.y, limit);
+}
+
+/// The number a Scaled stands for, held within +-limit.
+template <Scalar S>
+inline constexpr S toScalarWithin(const Scaled<S>& x, S limit) {
+  const Scaled<S> most = toScaled(limit);
+  return x > most ? limit : x < -most ? -limit : toScalar<S>(x);
+}
+/// The same, held at the end of S: for getters, which saturate.
+template <Scalar S>
+inline constexpr S saturated(const Scaled<S>& x) {
+  return toScalarWithin<S>(x, std::numeric_limits<S>::max());
 }
 
 }  // namespace samestep

@@ -208,8 +208,8 @@ class Space {
   /// The body for things that never move, always there. MIS: spaceGetStaticBody
   BodyId staticBody() const { return state_.staticBody; }
   /// Replaces it by a copy of a free static body.
-  /// @throws AttachedStaticBody while the old one has shapes; AttachedBody; IllegalBody if it is not static;
-  ///         SpaceLocked
+  /// @throws SpaceLocked; AttachedStaticBody while the old one has shapes; IllegalBody if it is not static;
+  ///         DuplicateBody, AttachedBody
   /// MIS: spaceSetStaticBody
   BodyId setStaticBody(const Body<S>& body);
 
@@ -237,7 +237,7 @@ class Space {
   /// MIS: spaceContainsShape
   bool contains(ShapeId id) const { return state_.shapes.contains(id); }
 
-  /// A short-lived reference: the next add, remove or restore invalidates it.
+  /// A short-lived reference: the next add, remove, restore or step ends it.
   /// @throws BodyNotFound
   Body<S>& body(BodyId id);
   const Body<S>& body(BodyId id) const;
@@ -253,7 +253,8 @@ class Space {
     apply(copy);
     replace(id, copy);
   }
-  /// @throws BodyNotFound, SpaceLocked
+  /// @throws SpaceLocked, BodyNotFound; MainStaticBody for the designated static body; SizeOutOfRange or
+  ///         IllegalBody where its shapes are too large or too heavy for a body that moves
   /// MIS: bodySetType
   void setType(BodyId id, BodyType type);
   /// Sets mass, moment and centre of mass of a dynamic body to those of its shapes that have mass.
@@ -315,6 +316,7 @@ class Space {
     const std::span<const std::uint32_t> thread = threadOf(id);
     LockGuard guard(*this);
     for (const std::uint32_t index : thread) {
+      if (!touching(state_.pairs[index])) continue;
       Arbiter<S> arbiter = arbiterOf(state_.pairs[index]);
       visit(arbiter);
     }
@@ -325,7 +327,7 @@ class Space {
   // number is state, saved and hashed.
 
   /// Registers functions under a number other than 0, or changes them.
-  /// @throws ValueOutOfRange for 0
+  /// @throws SpaceLocked; ValueOutOfRange for 0 or a null position or velocity function
   void registerHandler(CallbackNumber number, const CollisionHandler<S>& handler);
   void registerPositionFunc(CallbackNumber number, PositionFunc function, void* data = nullptr);
   void registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data = nullptr);
@@ -362,12 +364,14 @@ class Space {
   void callWildcardSeparateB(Arbiter<S>& arbiter);
 
   /// Runs after the step or query that is under way, or at once if there is none; once per key until then:
-  /// false if the key is waiting already. Callbacks run in the order they were added.
+  /// false if the key is waiting already. Callbacks run in the order they were added. When one throws, the
+  /// later ones run after the next step or query.
+  /// @throws ValueOutOfRange for a null function
   bool addPostStepCallback(PostStepFunc function, std::uint64_t key, void* data = nullptr);
 
   // Stepping.
 
-  /// One step of dt seconds, in (0, 1].
+  /// One step of dt seconds, in [0, 1]; 0 does nothing.
   /// @throws SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
   ///         MissingCallback for a number without function
   /// MIS: spaceStep
@@ -405,7 +409,8 @@ class Space {
   void filterArbiters(BodyId body, ShapeId shape = {});
 
   // Queries, answered by rising shape id. A shape is considered if its filter and the query's accept each
-  // other. They see the poses as they are now.
+  // other. They see the poses as they are now; within a step, as the step found (before it moved bodies) or
+  // made them, not what callbacks have moved since.
 
   /// The shapes within `distance` metres of a point; sensors included.
   void pointQuery(const Vector<S>& point, S distance, const ShapeFilter& filter,
@@ -432,10 +437,11 @@ class Space {
   SavedSpace<S> save() const;
   /// Brings back a saved world, as often as wanted, also one of another Space. It continues exactly as the
   /// original did.
-  /// @throws SpaceLocked; MissingCallback if this Space lacks a number the world uses
+  /// @throws SpaceLocked; ForeignWorld where nothing was saved; MissingCallback if this Space lacks a number
+  ///         the world uses
   void restore(const SavedSpace<S>& saved);
   /// Brings in a whole state, as save does; the caller answers for it being one that a Space can have.
-  /// @throws SpaceLocked, MissingCallback
+  /// @throws SpaceLocked, ForeignWorld, MissingCallback
   void adopt(const WorldState<S>& state);
   /// Forgets everything that can be computed again. Changes no result.
   /// @throws SpaceLocked
@@ -480,6 +486,7 @@ class Space {
   std::uint32_t nextShape(std::uint32_t index) const;
   std::span<const std::uint32_t> threadOf(BodyId id);
   bool touching(const Pair<S>& pair) const;
+  bool rests(const Pair<S>& pair) const;
   Arbiter<S> arbiterOf(Pair<S>& pair);
 
   // The stages of a step, in their order.
@@ -503,6 +510,8 @@ class Space {
   bool applyCollision(Pair<S>& pair, const CollisionInfo<S>& info);
   void callSeparate(Pair<S>& pair, bool removal);
   void dropPairs(BodyId body, ShapeId shape);
+  void eraseBody(BodyId id);
+  void eraseShape(ShapeId id);
   bool mayCollide(std::uint32_t a, std::uint32_t b) const;
   bool askHandlers(Pair<S>& pair);
   const CollisionHandler<S>* boundHandler(HandlerBinding::Kind kind, CollisionType typeA,

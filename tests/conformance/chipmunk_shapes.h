@@ -4,6 +4,7 @@
 #include <chipmunk/chipmunk.h>
 #include <chipmunk/chipmunk_structs.h>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -55,6 +56,10 @@ Shape<S> build(const ShapeRecipe& recipe) {
       return polyShapeRaw<S>(BodyId(), points, radius);
   }
   return {};
+}
+
+inline double far(const Vector<double>& a, const Vector<double>& b) {
+  return std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
 }
 
 inline cpVect toChipmunk(const Vector<double>& v) { return cpv(v.x, v.y); }
@@ -134,17 +139,12 @@ class RecipeSource {
   Transform<double> pose(double reach) {
     const SinCos<double> turn = sincos(number(-4, 4));
     const Vector<double> place = point(reach);
-    // Rounded, so that every scalar turns by the very same matrix.
-    const double c = exact32(turn.cos), s = exact32(turn.sin);
-    return {c, s, -s, c, place.x, place.y};
+    return Transform<double>::rigid(place, Vector<double>(turn.cos, turn.sin));
   }
 
  private:
   static double exact(double x) {
     return static_cast<double>(static_cast<std::int64_t>(x * 0x1p20)) * 0x1p-20;
-  }
-  static double exact32(double x) {
-    return static_cast<double>(static_cast<std::int64_t>(x * 0x1p32)) * 0x1p-32;
   }
 
   std::vector<Vector<double>> hull(double size) {

@@ -42,8 +42,6 @@ Expected chipmunkContacts(const ShapeRecipe& a, const Transform<double>& poseA, 
   return expected;
 }
 
-double far(const Vector<double>& a, const Vector<double>& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
 class CollisionConformanceTest : public ::testing::TestWithParam<PairOfTypes> {
  protected:
   template <Scalar S>
@@ -87,6 +85,7 @@ class CollisionConformanceTest : public ::testing::TestWithParam<PairOfTypes> {
 };
 
 TEST_P(CollisionConformanceTest, DoubleFindsTheContactsOfChipmunk) { compare<double>(2, 1, 1e-9); }
+TEST_P(CollisionConformanceTest, FixedFindsTheContactsOfChipmunk) { compare<Fixed>(2, 1, 1e-6); }
 
 std::string nameOf(const ::testing::TestParamInfo<PairOfTypes>& instance) {
   const char* names[] = {"Circle", "Segment", "Poly"};

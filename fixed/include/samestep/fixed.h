@@ -120,7 +120,9 @@ class BasicFixed {
     }
     return wrap(0 - static_cast<std::uint64_t>(a.raw_));
   }
-  friend constexpr BasicFixed operator*(BasicFixed a, BasicFixed b) { return product("multiply", {}, a, b); }
+  friend constexpr BasicFixed operator*(BasicFixed a, BasicFixed b) {
+    return rounded("multiply", {}, a.raw_, b.raw_);
+  }
   friend constexpr BasicFixed operator/(BasicFixed a, BasicFixed b) {
     const raw::Quotient result = raw::divide<way::Chosen, kFractionBits>(a.raw_, b.raw_, kMinRaw, kMaxRaw);
     if constexpr (kChecks) {
@@ -135,11 +137,11 @@ class BasicFixed {
 
   /// a b + c, rounded once.
   friend constexpr BasicFixed mulAdd(BasicFixed a, BasicFixed b, BasicFixed c) {
-    return product("mulAdd", c, a, b);
+    return rounded("mulAdd", c, a.raw_, b.raw_);
   }
   /// a b + c d, rounded once.
   friend constexpr BasicFixed dot(BasicFixed a, BasicFixed b, BasicFixed c, BasicFixed d) {
-    return product("dot", {}, a, b, c, d);
+    return rounded("dot", {}, a.raw_, b.raw_, c.raw_, d.raw_);
   }
   /// a b - c d, rounded once.
   friend constexpr BasicFixed cross(BasicFixed a, BasicFixed b, BasicFixed c, BasicFixed d) {
@@ -159,12 +161,12 @@ class BasicFixed {
   /// a0 b0 + a1 b1 + a2 b2, rounded once.
   friend constexpr BasicFixed dot3(BasicFixed a0, BasicFixed b0, BasicFixed a1, BasicFixed b1, BasicFixed a2,
                                    BasicFixed b2) {
-    return product("dot3", {}, a0, b0, a1, b1, a2, b2);
+    return rounded("dot3", {}, a0.raw_, b0.raw_, a1.raw_, b1.raw_, a2.raw_, b2.raw_);
   }
   /// a0 b0 + a1 b1 + a2 b2 + a3 b3, rounded once.
   friend constexpr BasicFixed dot4(BasicFixed a0, BasicFixed b0, BasicFixed a1, BasicFixed b1, BasicFixed a2,
                                    BasicFixed b2, BasicFixed a3, BasicFixed b3) {
-    return product("dot4", {}, a0, b0, a1, b1, a2, b2, a3, b3);
+    return rounded("dot4", {}, a0.raw_, b0.raw_, a1.raw_, b1.raw_, a2.raw_, b2.raw_, a3.raw_, b3.raw_);
   }
   /// a b / c, rounded once; saturates like a quotient.
   friend constexpr BasicFixed mulDiv(BasicFixed a, BasicFixed b, BasicFixed c) {
@@ -200,14 +202,14 @@ class BasicFixed {
   static constexpr BasicFixed wrap(std::uint64_t bits) { return fromRaw(static_cast<Rep>(bits)); }
 
   template <class Total, class... Rest>
-  static constexpr void addProducts(Total& total, BasicFixed a, BasicFixed b, Rest... rest) {
-    total.plus(a.raw_, b.raw_);
+  static constexpr void addProducts(Total& total, std::int64_t a, std::int64_t b, Rest... rest) {
+    total.plus(a, b);
     if constexpr (sizeof...(rest) > 0) addProducts(total, rest...);
   }
 
   /// The sum of c and the products of the factors taken two by two, rounded once.
   template <class... Factors>
-  static constexpr BasicFixed product(const char* operation, BasicFixed c, Factors... factors) {
+  static constexpr BasicFixed rounded(const char* operation, BasicFixed c, Factors... factors) {
     raw::ProductSum<way::Chosen, kFractionBits> sum;
     addProducts(sum, factors...);
     sum.plus(c.raw_);
@@ -215,7 +217,7 @@ class BasicFixed {
       raw::ExactSum<kFractionBits> exact;
       addProducts(exact, factors...);
       exact.plus(c.raw_);
-      if (!exact.fits(kMinRaw, kMaxRaw)) raw::report(operation, kFractionBits, {factors.raw_..., c.raw_});
+      if (!exact.fits(kMinRaw, kMaxRaw)) raw::report(operation, kFractionBits, {factors..., c.raw_});
     }
     return wrap(static_cast<std::uint64_t>(sum.rounded()));
   }

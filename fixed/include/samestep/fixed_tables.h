@@ -13,23 +13,39 @@ inline constexpr std::uint64_t kTurnsHigh = 0x28be60db;
 /// Its lower part.
 inline constexpr std::uint64_t kTurnsLow = 0x9391054a7f09d5f4;
 
-/// Sine on [0, pi / 4]; powers 0 to 5 of z with 63, 64, 65, 43, 43, 43 fraction bits; error 3.4e-15.
-inline constexpr std::array<std::uint64_t, 6> kSineTerms = {
-    0x6487ed5110b3e7f0, 0x14abbce6257a2a26, 0x1466bc67123fa17, 0x132d2c64, 0x2a0e3a, 0x3bab};
+/// Sine on [0, pi / 4], error 3.4e-15: powers 0 to 2 of z with 63, 64, 65 fraction bits, without their signs
+/// + - +.
+inline constexpr std::array<std::uint64_t, 3> kSineTerms = {0x6487ed5110b3e7f0, 0x14abbce6257a2a26,
+                                                            0x1466bc67123fa17};
 
-/// Cosine on [0, pi / 4]; powers 0 to 5 of z with 63, 64, 65, 43, 43, 43 fraction bits; error 5.6e-14.
-inline constexpr std::array<std::uint64_t, 6> kCosineTerms = {
-    0x7ffffffffff82d2b, 0x4ef4f326f4b0d412, 0x81e0f83a6f69041, 0xaae9dd18, 0x1e1e7cd, 0x341dc};
+/// Powers 3 to 5, Q42.
+inline constexpr std::array<std::int64_t, 3> kSineHighTerms = {-0x9969632, 0x15071d, -0x1dd5};
 
-/// (1 - atan(t) / t) / z; powers 0 to 5 of z with 64, 32, 32, 32, 32, 32 fraction bits; error 9.3e-13.
-inline constexpr std::array<std::uint64_t, 6> kArcTerms = {0x55555555544e8baf, 0x3333332e, 0x24924508,
-                                                           0x1c708f86,         0x171bd3fc, 0x110ac42e};
+/// Cosine on [0, pi / 4], error 5.6e-14: powers 0 to 2 of z with 63, 64, 65 fraction bits, without their
+/// signs + - +.
+inline constexpr std::array<std::uint64_t, 3> kCosineTerms = {0x7ffffffffff82d2b, 0x4ef4f326f4b0d412,
+                                                              0x81e0f83a6f69041};
 
-/// atan(0), atan(1/2), atan(1) in units of 2^-62.
-inline constexpr std::array<std::uint64_t, 3> kArcBase = {0x0, 0x1dac670561bb4f69, 0x3243f6a8885a308d};
+/// Powers 3 to 5, Q42.
+inline constexpr std::array<std::int64_t, 3> kCosineHighTerms = {-0x5574ee8c, 0xf0f3e6, -0x1a0ee};
 
-/// pi / 2 in units of 2^-62.
-inline constexpr std::uint64_t kHalfPi = 0x6487ed5110b4611a;
+/// (1 - atan(t) / t) / z; powers 0 to 4 of z, Q32; error 7.8e-11.
+inline constexpr std::array<std::int64_t, 5> kArcTerms = {0x55555555, -0x3333320b, 0x2491a537, -0x1c51cb92,
+                                                          0x14b0aaa2};
+
+/// atan(0), atan(1/2), atan(1), Q62; the same from pi / 2 back, from pi back, and from pi / 2 on.
+inline constexpr std::array<std::uint64_t, 12> kArcBase = {0x0,
+                                                           0x1dac670561bb4f69,
+                                                           0x3243f6a8885a308d,
+                                                           0x6487ed5110b4611a,
+                                                           0x46db864baef911b2,
+                                                           0x3243f6a8885a308d,
+                                                           0xc90fdaa22168c235,
+                                                           0xab63739cbfad72cc,
+                                                           0x96cbe3f9990e91a8,
+                                                           0x6487ed5110b4611a,
+                                                           0x82345456726fb083,
+                                                           0x96cbe3f9990e91a8};
 
 /// (2^d - 1) / d for d below 1/64; powers 0 to 5 with 64, 64, 64, 64, 41, 41 fraction bits; error 1.1e-19.
 inline constexpr std::array<std::uint64_t, 6> kPowerTerms = {

@@ -14,6 +14,12 @@ constexpr std::uint64_t magnitude(std::int64_t x) {
   return x < 0 ? 0 - static_cast<std::uint64_t>(x) : static_cast<std::uint64_t>(x);
 }
 
+/// x or -x without a branch.
+constexpr std::int64_t negatedIf(bool negate, std::uint64_t x) {
+  const std::uint64_t mask = 0 - static_cast<std::uint64_t>(negate);
+  return static_cast<std::int64_t>((x ^ mask) - mask);
+}
+
 struct FromDouble {
   std::int64_t raw;
   bool fits;
@@ -43,7 +49,7 @@ constexpr FromDouble fromDouble(double value, int bits, std::int64_t least, std:
   }
   const std::uint64_t limit = negative ? magnitude(least) : magnitude(most);
   if (size > limit) return {negative ? least : most, false};
-  return {static_cast<std::int64_t>(negative ? 0 - size : size), true};
+  return {negatedIf(negative, size), true};
 }
 
 /// A sum of products of raw numbers, in units of 2^-2bits modulo 2^(64+bits) or more, rounded once.
@@ -117,34 +123,53 @@ constexpr Quotient roundedQuotient(std::uint64_t high, std::uint64_t low, std::u
     return {negative ? least : most, fits};
   }
   const std::uint64_t size = result.quotient + up;
-  return {static_cast<std::int64_t>(negative ? 0 - size : size), true};
+  return {negatedIf(negative, size), true};
+}
+
+/// a 2^kShift / b by the division of 128 by 64 bits.
+template <class Way, int kShift>
+constexpr Quotient longDivide(std::int64_t a, std::int64_t b, std::int64_t least, std::int64_t most) {
+  const std::uint64_t n = magnitude(a);
+  // A shift above 64 is that of a reciprocal, where a is 1.
+  const std::uint64_t high = kShift >= 64  ? n << (kShift - 64) % 64
+                             : kShift == 0 ? 0
+                                           : n >> (64 - kShift) % 64;
+  const std::uint64_t low = kShift >= 64 ? 0 : n << kShift % 64;
+  return roundedQuotient<Way>(high, low, magnitude(b), (a ^ b) < 0, least, most);
+}
+
+/// The same where an estimate does not do; kept out of the way of the usual case.
+template <class Way, int kShift>
+[[gnu::noinline, gnu::cold]] constexpr Quotient farDivide(std::int64_t a, std::int64_t b, std::int64_t least,
+                                                          std::int64_t most) {
+  return longDivide<Way, kShift>(a, b, least, most);
 }
 
 /// a 2^kShift / b.
 template <class Way, int kShift>
 constexpr Quotient divide(std::int64_t a, std::int64_t b, std::int64_t least, std::int64_t most) {
-  const std::uint64_t n = magnitude(a);
-  if constexpr (kShift <= 32 && std::is_base_of_v<way::DivideByDouble, typename Way::Divide>) {
-    constexpr double kScale = static_cast<double>(std::uint64_t{1} << kShift);
+  if constexpr (std::is_base_of_v<way::DivideByDouble, typename Way::Divide> && kShift <= 64) {
+    constexpr double kScale =
+        kShift == 64 ? 18446744073709551616.0 : static_cast<double>(std::uint64_t{1} << kShift % 64);
     const std::uint64_t d = magnitude(b);
     if (d - 1 < way::DivideByDouble::kMaxDivisor - 1 && !std::is_constant_evaluated()) {
-      const double signedEstimate = static_cast<double>(a) * kScale / static_cast<double>(b);
+      const double signedEstimate = way::nearDouble(a) * kScale / way::nearDouble(b);
       const double estimate = signedEstimate < 0 ? -signedEstimate : signedEstimate;
       if (estimate < way::DivideByDouble::kMaxQuotient) [[likely]] {
-        const std::uint64_t size = way::DivideByDouble::rounded(estimate, n, d, kShift);
-        const bool negative = (a < 0) != (b < 0);
-        if (size > magnitude(negative ? least : most)) return {negative ? least : most, false};
-        return {static_cast<std::int64_t>(negative ? 0 - size : size), true};
+        // Only the low half of the numerator is needed.
+        const std::uint64_t low = kShift == 64 ? 0 : magnitude(a) << kShift % 64;
+        const std::uint64_t size = way::DivideByDouble::rounded(estimate, low, d);
+        const bool negative = (a ^ b) < 0;
+        if (size > magnitude(most)) [[unlikely]] {
+          const bool fits = negative && size == magnitude(least);
+          return {negative ? least : most, fits};
+        }
+        return {negatedIf(negative, size), true};
       }
     }
-  }
-  if constexpr (kShift > 64) {
-    // Only for reciprocals, where a is 1.
-    return roundedQuotient<Way>(n << (kShift - 64), 0, magnitude(b), (a < 0) != (b < 0), least, most);
+    return farDivide<Way, kShift>(a, b, least, most);
   } else {
-    const std::uint64_t high = kShift == 64 ? n : kShift == 0 ? 0 : n >> (64 - kShift) % 64;
-    const std::uint64_t low = kShift == 64 ? 0 : n << kShift % 64;
-    return roundedQuotient<Way>(high, low, magnitude(b), (a < 0) != (b < 0), least, most);
+    return longDivide<Way, kShift>(a, b, least, most);
   }
 }
 
@@ -168,6 +193,7 @@ constexpr std::int64_t squareRoot(std::int64_t x) {
 /// sqrt(x^2 + y^2); saturates to `most`.
 template <class Way>
 constexpr Quotient length(std::int64_t x, std::int64_t y, std::int64_t most) {
+  if ((x | y) == 0) [[unlikely]] return {0, true};
   const std::uint64_t root = Way::Root::template length<typename Way::Words>(x, y);
   if (root > magnitude(most)) return {most, false};
   return {static_cast<std::int64_t>(root), true};
@@ -210,6 +236,15 @@ constexpr bool atMostHalfAbove(std::uint64_t k, Halves square, std::uint64_t x, 
   return left[0] >= right[0];
 }
 
+/// `above` or one less: whichever is nearer to |component| 2^bits / sqrt(x^2 + y^2), known to lie between.
+[[gnu::noinline, gnu::cold]] constexpr std::uint64_t exactUnitComponent(std::uint64_t above, std::int64_t x,
+                                                                        std::int64_t y,
+                                                                        std::int64_t component, int bits) {
+  const std::uint64_t xSize = magnitude(x), ySize = magnitude(y);
+  const Halves square = multiplyHalves(xSize, xSize) + multiplyHalves(ySize, ySize);
+  return atMostHalfAbove(above - 1, square, magnitude(component), bits) ? above - 1 : above;
+}
+
 /// x 2^bits / sqrt(square) to nearest, from an estimate with kGuardBits more bits. Next to a rounding
 /// boundary the exact comparison decides. There is no tie: it would need an odd prime or a second factor 2
 /// in the hypotenuse of a primitive Pythagorean triple to divide a leg.
@@ -220,9 +255,7 @@ constexpr std::uint64_t unitComponent(std::uint64_t estimate, std::int64_t x, st
   const std::uint64_t above = shifted >> way::kGuardBits;
   if ((shifted & (2 * kHalf - 1)) >= 2 * way::kGuardMargin || above == 0) [[likely]]
     return above;
-  const std::uint64_t xSize = magnitude(x), ySize = magnitude(y);
-  const Halves square = multiplyHalves(xSize, xSize) + multiplyHalves(ySize, ySize);
-  return atMostHalfAbove(above - 1, square, magnitude(component), bits) ? above - 1 : above;
+  return exactUnitComponent(above, x, y, component, bits);
 }
 
 struct RawComponents {

@@ -16,28 +16,24 @@ constexpr std::uint64_t multiplyHigh(std::uint64_t a, std::uint64_t b) {
   return Way::Words::high(Way::Words::multiply(a, b));
 }
 
-/// x or -x without a branch.
-constexpr std::int64_t negatedIf(bool negate, std::uint64_t x) {
-  const std::uint64_t mask = 0 - static_cast<std::uint64_t>(negate);
-  return static_cast<std::int64_t>((x ^ mask) - mask);
-}
-
 struct RawSinCos {
   std::int64_t sin, cos;
 
   friend constexpr bool operator==(RawSinCos, RawSinCos) = default;
 };
 
-/// The alternating polynomial t0 - z (t1 - z (t2 - z (t3 - z (t4 - z t5)))), Q63.
+/// The polynomial t0 - z (t1 - z (t2 + z (h0 + z (h1 + z h2)))), Q63, of terms t and higher terms h.
 /// @param z  Q63, at most 1
 template <class Way>
-constexpr std::uint64_t alternatingSum(const std::array<std::uint64_t, 6>& terms, std::uint64_t z) {
-  const std::uint64_t shortZ = z >> 31;
+constexpr std::uint64_t polynomial(const std::array<std::uint64_t, 3>& terms,
+                                   const std::array<std::int64_t, 3>& highTerms, std::uint64_t z) {
+  const std::uint64_t shortZ = (z + (std::uint64_t{1} << 30)) >> 31;  // Q32
+  const auto signedZ = static_cast<std::int64_t>(shortZ);
   // The last three need few enough bits for 64-bit products.
-  std::uint64_t sum = terms[4] - (terms[5] * shortZ >> 32);
-  sum = terms[3] - (sum * shortZ >> 32);
-  sum = terms[2] - (sum * shortZ >> 10);
-  sum = terms[1] - multiplyHigh<Way>(sum, z);
+  std::int64_t high = highTerms[1] + (highTerms[2] * signedZ >> 32);
+  high = highTerms[0] + (high * signedZ >> 32);
+  std::uint64_t sum = terms[2] + static_cast<std::uint64_t>(high * signedZ >> 9);
+  sum = terms[1] - Way::Words::multiplyShort(sum, shortZ);
   return terms[0] - multiplyHigh<Way>(sum, z);
 }
 
@@ -52,8 +48,8 @@ constexpr RawSinCos sincos(std::int64_t angle) {
   const bool before = offset >> 63 != 0;
   const std::uint64_t x = static_cast<std::uint64_t>(negatedIf(before, offset)) << 2;
   const std::uint64_t z = multiplyHigh<Way>(x, x) << 1;
-  const std::uint64_t sine = multiplyHigh<Way>(alternatingSum<Way>(kSineTerms, z), x);
-  const std::uint64_t cosine = alternatingSum<Way>(kCosineTerms, z);
+  const std::uint64_t sine = multiplyHigh<Way>(polynomial<Way>(kSineTerms, kSineHighTerms, z), x);
+  const std::uint64_t cosine = polynomial<Way>(kCosineTerms, kCosineHighTerms, z);
   const std::uint64_t sineUnits = (sine + (std::uint64_t{1} << 29)) >> 30;
   const std::uint64_t cosineUnits = (cosine + (std::uint64_t{1} << 30)) >> 31;
   // An odd count of quarters swaps sine and cosine.
@@ -73,28 +69,31 @@ constexpr std::int64_t atan2(std::int64_t y, std::int64_t x) {
   const bool steep = ySize > xSize;
   const std::uint64_t large = steep ? ySize : xSize;
   const std::uint64_t small = steep ? xSize : ySize;
-  // The larger one gets its top bit at 60; at most two bits of the smaller are lost.
+  // The larger one gets its top bit at 59; at most three bits of the smaller are lost.
   const int zeros = std::countl_zero(large);
-  const std::uint64_t d = large << zeros >> 3;
-  const std::uint64_t n = small << zeros >> 3;
+  const std::uint64_t d = large << zeros >> 4;
+  const std::uint64_t n = small << zeros >> 4;
   // Measured from atan(0), atan(1/2) or atan(1), so that the tangent t of the rest is at most 0.238, Q64.
   const std::uint64_t base = (n > (d >> 2) - (d >> 6) ? 1u : 0u) + (n > d - (d >> 2) ? 1u : 0u);
   const std::uint64_t top = 2 * n - base * d;
   const bool below = top >> 63 != 0;
   const std::uint64_t t =
-      Way::Divide::divide(static_cast<std::uint64_t>(negatedIf(below, top)), 0, 2 * d + base * n).quotient;
-  const std::uint64_t z = multiplyHigh<Way>(t, t);
-  const std::uint64_t shortZ = z >> 28;  // Q36, below 2^32
-  std::uint64_t sum = kArcTerms[4] - (kArcTerms[5] * shortZ >> 36);
-  sum = kArcTerms[3] - (sum * shortZ >> 36);
-  sum = kArcTerms[2] - (sum * shortZ >> 36);
-  sum = kArcTerms[1] - (sum * shortZ >> 36);
-  sum = kArcTerms[0] - (sum * shortZ >> 4);
-  const std::uint64_t part = t - multiplyHigh<Way>(t, multiplyHigh<Way>(z, sum));
-  // Q62 from here.
-  std::uint64_t angle = kArcBase[base] + static_cast<std::uint64_t>(negatedIf(below, part >> 2));
-  angle = static_cast<std::uint64_t>(negatedIf(steep, angle)) + (kHalfPi & (0 - std::uint64_t{steep}));
-  angle = static_cast<std::uint64_t>(negatedIf(x < 0, angle)) + (2 * kHalfPi & (0 - std::uint64_t{x < 0}));
+      Way::Divide::fraction48(static_cast<std::uint64_t>(negatedIf(below, top)), 2 * d + base * n);
+  const std::uint64_t shortT = (t + (1 << 13)) >> 14;  // Q34, below 2^32
+  const std::uint64_t z = shortT * shortT >> 32;       // Q36, below 2^32
+  const auto signedZ = static_cast<std::int64_t>(z);
+  // Two halves of the sum side by side, for they are waited for.
+  const std::int64_t lower = kArcTerms[1] + (kArcTerms[2] * signedZ >> 36);
+  const std::int64_t upper = kArcTerms[3] + (kArcTerms[4] * signedZ >> 36);
+  const auto shortSquare = static_cast<std::int64_t>(z * z >> 36);
+  const std::int64_t sum = lower + (upper * shortSquare >> 36);
+  const auto factor = static_cast<std::uint64_t>(kArcTerms[0] + (sum * signedZ >> 36));
+  const std::uint64_t cube = shortT * z;                                // Q70, below 2^64
+  const std::uint64_t part = (t << 14) - ((cube >> 32) * factor >> 8);  // Q62
+  // Mirrored at the diagonal where steep, and at the y axis where x < 0. Q62.
+  const bool left = x < 0;
+  const std::uint64_t from = kArcBase[base + (steep ? 3u : 0u) + (left ? 6u : 0u)];
+  const std::uint64_t angle = from + static_cast<std::uint64_t>(negatedIf((below != steep) != left, part));
   return negatedIf(y < 0, (angle + (std::uint64_t{1} << 29)) >> 30);
 }
 
@@ -115,8 +114,8 @@ constexpr Quotient exp2OfQ88(std::uint64_t high, std::uint64_t low) {
   sum = kPowerTerms[0] + (multiplyHigh<Way>(sum, d) >> 6);
   const std::uint64_t growth = multiplyHigh<Way>(sum, d);  // 2^d - 1, Q70
   using Words = typename Way::Words;
-  const auto power =
-      Words::make(kPowerHigh[i], kPowerLow[i]) + (Words::multiply(kPowerHigh[i], growth) >> 6);  // Q127
+  const std::uint64_t grown = multiplyHigh<Way>(kPowerHigh[i], growth);                                // Q69
+  const auto power = Words::make(kPowerHigh[i], kPowerLow[i]) + Words::make(grown >> 6, grown << 58);  // Q127
   const std::uint64_t mantissa = Words::high(power);
   const int shift = static_cast<int>(31 - whole);  // 1 to 64
   const std::uint64_t twice = mantissa >> (shift - 1);

@@ -7,10 +7,23 @@
 
 #include "samestep/halves.h"
 
+#if defined(__SSE2__) && defined(__x86_64__)
+#include <emmintrin.h>
+#endif
+
 /// The ways a machine may compute what the exact result defines. All of them give the same bits; every way
 /// this compiler can build is compiled and compared by the tests. This is the only file that asks which
 /// compiler or processor it meets.
 namespace samestep::way {
+
+/// whole + high:low / 2^kBits to nearest, ties to even, modulo 2^64.
+template <int kBits>
+constexpr std::int64_t roundedShift(std::uint64_t high, std::uint64_t low, std::uint64_t whole) {
+  constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+  const std::uint64_t floor = (high << (64 - kBits) | low >> kBits) + whole;
+  // Less than half of a unit is added, and a little more to an odd floor, so that a tie carries.
+  return static_cast<std::int64_t>(floor + (((low & kMask) + (kMask >> 1) + (floor & 1)) >> kBits));
+}
 
 /// 128-bit words in two halves: needs nothing but 64-bit integers.
 struct PortableWords {
@@ -20,6 +33,10 @@ struct PortableWords {
   static constexpr std::uint64_t high(U128 a) { return a.high; }
   static constexpr std::uint64_t low(U128 a) { return a.low; }
   static constexpr U128 multiply(std::uint64_t a, std::uint64_t b) { return multiplyHalves(a, b); }
+  /// a b / 2^33 for b at most 2^32: half the work of a full product.
+  static constexpr std::uint64_t multiplyShort(std::uint64_t a, std::uint64_t b) {
+    return ((a >> 32) * b + ((a & 0xffffffff) * b >> 32)) >> 1;
+  }
   static constexpr U128 multiplySigned(std::int64_t a, std::int64_t b) {
     Halves product = multiplyHalves(static_cast<std::uint64_t>(a), static_cast<std::uint64_t>(b));
     product.high -= (static_cast<std::uint64_t>(a >> 63) & static_cast<std::uint64_t>(b)) +
@@ -28,7 +45,7 @@ struct PortableWords {
   }
 
   /// The sum of products of Q32.32 numbers, modulo 2^64 units, with its fraction apart. Keeps only the bits
-  /// that reach the result: four 64-bit products each, no carries.
+  /// that reach the result: three 64-bit products each, no carries.
   class Sum32 {
    public:
     constexpr void plus(std::int64_t a, std::int64_t b) {
@@ -55,11 +72,12 @@ struct PortableWords {
     struct Parts {
       std::uint64_t whole, fraction;
     };
+    /// a b 2^-32 is a's upper half times b, and its lower half times both halves of b.
     static constexpr Parts product(std::int64_t a, std::int64_t b) {
       const auto aHigh = static_cast<std::uint64_t>(a >> 32), aLow = static_cast<std::uint64_t>(a) & kMask;
       const auto bHigh = static_cast<std::uint64_t>(b >> 32), bLow = static_cast<std::uint64_t>(b) & kMask;
       const std::uint64_t lowest = aLow * bLow;
-      return {(aHigh * bHigh << 32) + aHigh * bLow + aLow * bHigh + (lowest >> 32), lowest & kMask};
+      return {aHigh * static_cast<std::uint64_t>(b) + aLow * bHigh + (lowest >> 32), lowest & kMask};
     }
     std::uint64_t whole_ = 0;
     std::uint64_t fraction_ = 0;
@@ -72,30 +90,21 @@ class Sum {
  public:
   constexpr void plus(std::int64_t a, std::int64_t b) { sum_ = sum_ + Words::multiplySigned(a, b); }
   constexpr void minus(std::int64_t a, std::int64_t b) { sum_ = sum_ - Words::multiplySigned(a, b); }
-  constexpr void plus(std::int64_t c) {
-    sum_ = sum_ + (Words::make(static_cast<std::uint64_t>(c >> 63), static_cast<std::uint64_t>(c)) << kBits);
-  }
+  constexpr void plus(std::int64_t c) { whole_ += static_cast<std::uint64_t>(c); }
   /// To nearest, ties to even.
   constexpr std::int64_t rounded() const {
     if constexpr (kBits == 0) {
-      return static_cast<std::int64_t>(Words::low(sum_));
+      return static_cast<std::int64_t>(Words::low(sum_) + whole_);
+    } else if constexpr (kBits == 32) {
+      return Words::rounded32(sum_, whole_);
     } else {
-      // An odd floor makes a tie look like more than half.
-      const std::uint64_t floor = Words::low(sum_ >> kBits);
-      if constexpr (kBits == 32) {
-        const auto rest =
-            static_cast<std::uint32_t>(Words::low(sum_)) | static_cast<std::uint32_t>(floor & 1);
-        return static_cast<std::int64_t>(floor + (rest > 0x80000000 ? 1 : 0));
-      } else {
-        constexpr std::uint64_t kOne = std::uint64_t{1} << kBits;
-        const std::uint64_t twice = (Words::low(sum_) & (kOne - 1)) << 1 | (floor & 1);
-        return static_cast<std::int64_t>(floor + (twice > kOne ? 1 : 0));
-      }
+      return roundedShift<kBits>(Words::high(sum_), Words::low(sum_), whole_);
     }
   }
 
  private:
   typename Words::U128 sum_ = {};
+  std::uint64_t whole_ = 0;
 };
 
 template <>
@@ -106,30 +115,52 @@ struct DivideByHalves {
   static constexpr QuotientRemainder divide(std::uint64_t high, std::uint64_t low, std::uint64_t divisor) {
     return divideHalves({high, low}, divisor);
   }
+  /// floor(n 2^48 / d), n < d / 4, d < 2^62.
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return divide(n >> 16, n << 48, d).quotient;
+  }
 };
+
+/// x to the nearest double, or near it.
+inline double nearDouble(std::int64_t x) {
+#if defined(__SSE2__) && defined(__x86_64__)
+  // The plain conversion keeps the upper half of its register, and so waits for whatever was there before.
+  __m128d result = _mm_cvtsi64_sd(_mm_setzero_pd(), x);
+#if defined(__GNUC__)
+  asm("" : "+x"(result));  // clang would make it the plain conversion again
+#endif
+  return _mm_cvtsd_f64(result);
+#else
+  return static_cast<double>(x);
+#endif
+}
 
 /// Quotients of numbers from an estimate in double, made exact by integers: for processors that have a fast
 /// floating divide but none of 128 by 64 bits. Any rounding mode and contraction gives the same quotient,
 /// because the estimate is only required to be near.
 struct DivideByDouble : DivideByHalves {
   static constexpr double kMaxQuotient = 1125899906842624.0;  // 2^50: the estimate is within one unit
-  static constexpr std::uint64_t kMaxDivisor = std::uint64_t{1} << 61;
+  static constexpr std::uint64_t kMaxDivisor = std::uint64_t{1} << 61;  // twice the remainder fits
 
-  /// n 2^shift / d to nearest, ties to even, of magnitudes.
-  /// @pre d < kMaxDivisor and estimate(n, d, shift) < kMaxQuotient
-  static constexpr std::uint64_t rounded(double estimate, std::uint64_t n, std::uint64_t d, int shift) {
-    std::uint64_t quotient = static_cast<std::uint64_t>(static_cast<std::int64_t>(estimate));
+  /// The quotient of a numerator with these low 64 bits to nearest, ties to even, of magnitudes.
+  /// @pre d < kMaxDivisor, estimate < kMaxQuotient
+  static constexpr std::uint64_t rounded(double estimate, std::uint64_t low, std::uint64_t d) {
+    // To the nearest of the estimate, so that the remainder's place says all: within 3/2 of d either way.
+    const auto quotient = static_cast<std::uint64_t>(static_cast<std::int64_t>(estimate + 0.5));
     // The remainder is small, so that its low 64 bits are all of it.
-    auto rest = static_cast<std::int64_t>((n << shift) - quotient * d);
+    const auto twice = static_cast<std::int64_t>(2 * (low - quotient * d));
     const auto divisor = static_cast<std::int64_t>(d);
-    const bool below = rest < 0;
-    quotient -= below ? 1 : 0;
-    rest += below ? divisor : 0;
-    const bool beyond = rest >= divisor;
-    quotient += beyond ? 1 : 0;
-    rest -= beyond ? divisor : 0;
-    const std::int64_t twice = 2 * rest + static_cast<std::int64_t>(quotient & 1);
-    return quotient + (twice > divisor ? 1 : 0);
+    const auto odd = static_cast<std::int64_t>(quotient & 1);
+    return quotient + (twice + odd > divisor ? 1u : 0u) - (twice - odd < -divisor ? 1u : 0u);
+  }
+
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    if (std::is_constant_evaluated()) return DivideByHalves::fraction48(n, d);
+    const auto divisor = static_cast<std::int64_t>(d);
+    const auto quotient = static_cast<std::int64_t>(nearDouble(static_cast<std::int64_t>(n)) *
+                                                    281474976710656.0 / nearDouble(divisor));
+    const auto rest = static_cast<std::int64_t>((n << 48) - static_cast<std::uint64_t>(quotient) * d);
+    return static_cast<std::uint64_t>(quotient + (rest >= divisor ? 1 : 0) - (rest < 0 ? 1 : 0));
   }
 };
 
@@ -177,7 +208,7 @@ struct RootByInteger {
     return roundedRoot(n.high, n.low);
   }
 
-  /// sqrt(x^2 + y^2) to nearest.
+  /// sqrt(x^2 + y^2) to nearest, not both 0.
   template <class Words>
   static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
     const auto square = Words::multiplySigned(x, x) + Words::multiplySigned(y, y);
@@ -244,22 +275,22 @@ struct RootByDouble {
   static constexpr std::uint64_t squareRoot(std::int64_t x) {
     if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::squareRoot<kBits>(x);
     constexpr double kScale = static_cast<double>(std::uint64_t{1} << kBits);
-    const auto root = static_cast<std::int64_t>(__builtin_sqrt(static_cast<double>(x) * kScale) + 0.5);
+    const auto root = static_cast<std::int64_t>(__builtin_sqrt(nearDouble(x) * kScale) + 0.5);
     return corrected(root, (static_cast<std::uint64_t>(x) << kBits));
   }
 
-  /// sqrt(x^2 + y^2) to nearest.
+  /// sqrt(x^2 + y^2) to nearest, not both 0.
   template <class Words>
   static constexpr std::uint64_t length(std::int64_t x, std::int64_t y) {
     if (!std::is_constant_evaluated()) {
-      const auto xd = static_cast<double>(x), yd = static_cast<double>(y);
+      const double xd = nearDouble(x), yd = nearDouble(y);
       const double estimate = __builtin_sqrt(xd * xd + yd * yd) + 0.5;
       if (estimate < 281474976710656.0) [[likely]] {  // 2^48
         const auto xBits = static_cast<std::uint64_t>(x), yBits = static_cast<std::uint64_t>(y);
         return corrected(static_cast<std::int64_t>(estimate), xBits * xBits + yBits * yBits);
       }
     }
-    return RootByInteger::length<Words>(x, y);
+    return farLength<Words>(x, y);
   }
 
   /// @pre not both 0
@@ -267,19 +298,27 @@ struct RootByDouble {
   static constexpr UnitEstimate unit(std::int64_t x, std::int64_t y) {
     if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::unit<kBits>(x, y);
     constexpr double kScale = static_cast<double>(std::uint64_t{1} << (kBits + kGuardBits));
-    const auto xd = static_cast<double>(x < 0 ? -static_cast<double>(x) : static_cast<double>(x));
-    const auto yd = static_cast<double>(y < 0 ? -static_cast<double>(y) : static_cast<double>(y));
+    const double xd = nearDouble(x), yd = nearDouble(y);
     const double inverse = kScale / __builtin_sqrt(xd * xd + yd * yd);
-    return {static_cast<std::uint64_t>(static_cast<std::int64_t>(xd * inverse)),
-            static_cast<std::uint64_t>(static_cast<std::int64_t>(yd * inverse))};
+    const auto component = [&](double v) {
+      const auto scaled = static_cast<std::int64_t>(v * inverse);
+      return static_cast<std::uint64_t>(scaled < 0 ? -scaled : scaled);
+    };
+    return {component(xd), component(yd)};
   }
 
  private:
+  /// Beyond what the estimate can do; kept out of the way of the usual case.
+  template <class Words>
+  [[gnu::noinline, gnu::cold]] static constexpr std::uint64_t farLength(std::int64_t x, std::int64_t y) {
+    return RootByInteger::length<Words>(x, y);
+  }
+
   /// The integer nearest to sqrt(n) from one at most one off, below 2^48, and the low half of n.
   static constexpr std::uint64_t corrected(std::int64_t root, std::uint64_t low) {
     const auto rest =
         static_cast<std::int64_t>(low - static_cast<std::uint64_t>(root) * static_cast<std::uint64_t>(root));
-    return static_cast<std::uint64_t>(root + (rest > root ? 1 : 0) - (rest <= -root ? 1 : 0));
+    return static_cast<std::uint64_t>(root + (rest > root ? 1 : 0) - (rest <= -root && root > 0 ? 1 : 0));
   }
 };
 
@@ -295,8 +334,18 @@ struct NativeWords {
   static constexpr std::uint64_t high(U128 a) { return static_cast<std::uint64_t>(a >> 64); }
   static constexpr std::uint64_t low(U128 a) { return static_cast<std::uint64_t>(a); }
   static constexpr U128 multiply(std::uint64_t a, std::uint64_t b) { return U128{a} * b; }
+  static constexpr std::uint64_t multiplyShort(std::uint64_t a, std::uint64_t b) {
+    return high(multiply(a, b << 31));
+  }
   static constexpr U128 multiplySigned(std::int64_t a, std::int64_t b) {
+#if !defined(__clang__)
+    // gcc 12 otherwise stores the sign-extended factor to the stack, though nothing ever reads it.
+    if (!std::is_constant_evaluated()) asm("" : "+r"(b));
+#endif
     return static_cast<U128>(NativeSigned128{a} * b);
+  }
+  static constexpr std::int64_t rounded32(U128 sum, std::uint64_t whole) {
+    return roundedShift<32>(high(sum), low(sum), whole);
   }
 };
 
@@ -307,6 +356,9 @@ struct DivideByNative {
     const auto quotient = static_cast<std::uint64_t>(numerator / divisor);
     return {quotient, low - quotient * divisor};
   }
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return static_cast<std::uint64_t>((Native128{n} << 48) / d);
+  }
 };
 inline constexpr bool kHasNativeWords = true;
 #else
@@ -316,6 +368,22 @@ inline constexpr bool kHasNativeWords = false;
 #endif
 
 #if defined(__x86_64__) && defined(__GNUC__)
+/// Native words with the rounding shift in four instructions.
+struct HardwareWords : NativeWords {
+  static constexpr std::int64_t rounded32(U128 sum, std::uint64_t whole) {
+    if (std::is_constant_evaluated()) return NativeWords::rounded32(sum, whole);
+    std::uint64_t upper = high(sum), lower = low(sum);
+    asm("btq $32, %[parity]\n\t"
+        "adcq $0x7fffffff, %[lower]\n\t"
+        "adcq $0, %[upper]\n\t"
+        "shrdq $32, %[upper], %[lower]"
+        : [lower] "+r"(lower), [upper] "+r"(upper)
+        : [parity] "r"(lower + (whole << 32))
+        : "cc");
+    return static_cast<std::int64_t>(lower + whole);
+  }
+};
+
 /// The processor's division of 128 by 64 bits.
 struct DivideByHardware {
   static constexpr QuotientRemainder divide(std::uint64_t high, std::uint64_t low, std::uint64_t divisor) {
@@ -327,9 +395,13 @@ struct DivideByHardware {
         : "cc");
     return result;
   }
+  static constexpr std::uint64_t fraction48(std::uint64_t n, std::uint64_t d) {
+    return divide(n >> 16, n << 48, d).quotient;
+  }
 };
 inline constexpr bool kHasHardwareDivide = true;
 #else
+using HardwareWords = NativeWords;
 using DivideByHardware = DivideByHalves;
 inline constexpr bool kHasHardwareDivide = false;
 #endif
@@ -349,7 +421,7 @@ using IntegerOnly = Way<PortableWords, DivideByHalves, RootByInteger>;
 /// The compiler's 128-bit integers throughout.
 using Native = Way<NativeWords, DivideByNative, RootByDouble>;
 /// The processor's own division.
-using Hardware = Way<NativeWords, DivideByHardware, RootByDouble>;
+using Hardware = Way<HardwareWords, DivideByHardware, RootByDouble>;
 
 #if defined(SAMESTEP_FIXED_INTEGER_ONLY)
 using Chosen = IntegerOnly;

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/command.h>
+
+#include "require_ieee.h"
+
+namespace samestep {
+namespace {
+
+template <Scalar S>
+void addShapes(Space<S>& space, BodyId body, const std::vector<Shape<S>>& shapes) {
+  for (Shape<S> shape : shapes) {
+    shape.setBody(body);
+    space.add(shape);
+  }
+}
+
+/// Does one kind of command each.
+template <Scalar S>
+struct Applier {
+  Space<S>& space;
+  const Wiring<S>& wiring;
+
+  BodyId operator()(const ApplyImpulse<S>& c) const {
+    Body<S>& body = space.body(c.body);
+    body.applyImpulse(c.impulse, body.worldCenter() + c.arm);
+    return {};
+  }
+  BodyId operator()(const ApplyForce<S>& c) const {
+    Body<S>& body = space.body(c.body);
+    body.applyForce(c.force, body.worldCenter() + c.arm);
+    return {};
+  }
+  BodyId operator()(const SetVelocity<S>& c) const {
+    space.body(c.body).setVelocity(c.velocity);
+    return {};
+  }
+  BodyId operator()(const SetAngularVelocity<S>& c) const {
+    space.body(c.body).setAngularVelocity(c.angularVelocity);
+    return {};
+  }
+  BodyId operator()(const SetPosition<S>& c) const {
+    space.body(c.body).setPosition(c.position);
+    return {};
+  }
+  BodyId operator()(const SetAngle<S>& c) const {
+    space.body(c.body).setAngle(c.angle);
+    return {};
+  }
+  BodyId operator()(const Spawn<S>& c) const {
+    // Tried out elsewhere first: once an id is given out here, it cannot be taken back.
+    Space<S> trial;
+    trial.setWorldExtent(space.worldExtent());
+    addShapes(trial, trial.add(c.body), c.shapes);
+
+    const BodyId id = space.add(c.body);
+    addShapes(space, id, c.shapes);
+    return id;
+  }
+  BodyId operator()(const Remove& c) const {
+    space.removeWithShapes(c.body);
+    return {};
+  }
+  BodyId operator()(const UserInput& c) const {
+    require<Fault::MissingCallback>(wiring.applyInput != nullptr);
+    wiring.applyInput(space, c.bytes, wiring.data);
+    return {};
+  }
+};
+
+}  // namespace
+
+const char* commandName(CommandKind kind) {
+  switch (kind) {
+    case CommandKind::applyImpulse:
+      return "impulse";
+    case CommandKind::applyForce:
+      return "force";
+    case CommandKind::setVelocity:
+      return "velocity";
+    case CommandKind::setAngularVelocity:
+      return "angularVelocity";
+    case CommandKind::setPosition:
+      return "position";
+    case CommandKind::setAngle:
+      return "angle";
+    case CommandKind::spawn:
+      return "spawn";
+    case CommandKind::remove:
+      return "remove";
+    case CommandKind::userInput:
+      return "input";
+  }
+  return "unknown";
+}
+
+template <Scalar S>
+BodyId apply(Space<S>& space, const Command<S>& command, const Wiring<S>& wiring) {
+  return std::visit(Applier<S>{space, wiring}, command);
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template BodyId apply<double>(Space<double>&, const Command<double>&, const Wiring<double>&);
+#endif
+template BodyId apply<Fixed>(Space<Fixed>&, const Command<Fixed>&, const Wiring<Fixed>&);
+template BodyId apply<CheckedFixed>(Space<CheckedFixed>&, const Command<CheckedFixed>&,
+                                    const Wiring<CheckedFixed>&);
+
+}  // namespace samestep

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include <samestep/space.h>
+
+namespace samestep {
+
+// What a player or the game does to a world between two steps. A command is applied as a whole or, where the
+// Space refuses it, not at all: it then throws what the Space throws and the world is as it was. Numbers have
+// the units and ranges of the Body function they are named after.
+
+/// An impulse in N s; see Body::applyImpulse.
+template <Scalar S>
+struct ApplyImpulse {
+  BodyId body{};
+  Vector<S> impulse{};
+  /// From the centre of mass to where it acts, in world axes, m.
+  Vector<S> arm{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("body", self.body);
+    visit("impulse", self.impulse);
+    visit("arm", self.arm);
+  }
+};
+
+/// A force in N during the next step; see Body::applyForce.
+template <Scalar S>
+struct ApplyForce {
+  BodyId body{};
+  Vector<S> force{};
+  /// From the centre of mass to where it acts, in world axes, m.
+  Vector<S> arm{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("body", self.body);
+    visit("force", self.force);
+    visit("arm", self.arm);
+  }
+};
+
+/// See Body::setVelocity.
+template <Scalar S>
+struct SetVelocity {
+  BodyId body{};
+  Vector<S> velocity{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("body", self.body);
+    visit("velocity", self.velocity);
+  }
+};
+
+/// See Body::setAngularVelocity.
+template <Scalar S>
+struct SetAngularVelocity {
+  BodyId body{};
+  S angularVelocity{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("body", self.body);
+    visit("angularVelocity", self.angularVelocity);
+  }
+};
+
+/// See Body::setPosition.
+template <Scalar S>
+struct SetPosition {
+  BodyId body{};
+  Vector<S> position{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("body", self.body);
+    visit("position", self.position);
+  }
+};
+
+/// See Body::setAngle.
+template <Scalar S>
+struct SetAngle {
+  BodyId body{};
+  S angle{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("body", self.body);
+    visit("angle", self.angle);
+  }
+};
+
+/// A new body with its shapes, which need not name it.
+template <Scalar S>
+struct Spawn {
+  Body<S> body{};
+  std::vector<Shape<S>> shapes;
+};
+
+/// Takes a body and its shapes away.
+struct Remove {
+  BodyId body{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("body", self.body);
+  }
+};
+
+/// Bytes that only the game understands: its own input, applied by its own function.
+struct UserInput {
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Anything that happens to a world from outside. The order of the alternatives is that of CommandKind.
+template <Scalar S>
+using Command = std::variant<ApplyImpulse<S>, ApplyForce<S>, SetVelocity<S>, SetAngularVelocity<S>,
+                             SetPosition<S>, SetAngle<S>, Spawn<S>, Remove, UserInput>;
+
+/// What a recording calls a command.
+enum class CommandKind : std::uint8_t {
+  applyImpulse = 0,
+  applyForce = 1,
+  setVelocity = 2,
+  setAngularVelocity = 3,
+  setPosition = 4,
+  setAngle = 5,
+  spawn = 6,
+  remove = 7,
+  userInput = 8,
+};
+inline constexpr std::uint8_t kCommandKinds = 9;
+
+template <Scalar S>
+CommandKind kindOf(const Command<S>& command) {
+  return static_cast<CommandKind>(command.index());
+}
+/// "impulse", "spawn", ...: also the word that scenes use.
+const char* commandName(CommandKind kind);
+
+/// What a Space needs beside its state, before a recorded world is put in: the functions behind the numbers
+/// its handlers and bodies name, and the function that understands the game's own input.
+template <Scalar S>
+struct Wiring {
+  /// Registers functions with a new Space; null for none.
+  void (*connect)(Space<S>& space, void* data) = nullptr;
+  /// Applies a UserInput; null where no recording of the game has any. It must go by the bytes and the Space
+  /// alone, and either apply all or throw an Error and change nothing.
+  void (*applyInput)(Space<S>& space, std::span<const std::uint8_t> bytes, void* data) = nullptr;
+  void* data = nullptr;
+};
+
+/// Does what the command says.
+/// @return the id of a spawned body, else an id that is not valid()
+/// @throws what the Space throws; MissingCallback for a UserInput without a function
+template <Scalar S>
+BodyId apply(Space<S>& space, const Command<S>& command, const Wiring<S>& wiring = {});
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template BodyId apply<double>(Space<double>&, const Command<double>&, const Wiring<double>&);
+#endif
+extern template BodyId apply<Fixed>(Space<Fixed>&, const Command<Fixed>&, const Wiring<Fixed>&);
+extern template BodyId apply<CheckedFixed>(Space<CheckedFixed>&, const Command<CheckedFixed>&,
+                                           const Wiring<CheckedFixed>&);
+
+}  // namespace samestep

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <samestep/command.h>
+#include <samestep/space_codec.h>
+
+namespace samestep {
+
+// A recording: a world, what happened to it tick by tick, and the hash of the world after every tick. It
+// needs nothing else to be replayed. docs/formats.md tells every byte.
+
+inline constexpr std::uint32_t kRecordingVersion = 1;
+
+/// What the first bytes of a recording say.
+struct RecordingInfo {
+  std::uint32_t version = 0;
+  std::uint32_t revision = 0;  ///< kSimulationRevision of the build that recorded it.
+  ScalarKind scalar = ScalarKind::fixed;
+};
+
+/// @throws FormatError for what is no recording, and for one of another version
+RecordingInfo recordingInfo(std::span<const std::uint8_t> bytes);
+
+/// What stands in a recording after the first world.
+enum class RecordingItem : std::uint8_t {
+  step = 0,     ///< A step was made; its hash.
+  command = 1,  ///< Something that was done before the next step.
+  end = 2,      ///< The number of steps, then the checksum.
+};
+
+/// Reads a recording from front to back. The bytes must outlive it.
+template <Scalar S>
+class RecordingReader {
+ public:
+  /// Checks all of it first: structure, numbers, checksum, and that nothing follows.
+  /// @throws FormatError
+  explicit RecordingReader(std::span<const std::uint8_t> bytes, const WorldLimits& limits = {});
+
+  /// Seconds.
+  S timeStep() const { return timeStep_; }
+  /// Steps in the recording.
+  std::uint64_t ticks() const { return ticks_; }
+  /// Before the first step.
+  const WorldState<S>& initialWorld() const { return world_; }
+  std::uint64_t initialHash() const { return initialHash_; }
+
+  /// Reads the next item; once at the end, stays there.
+  RecordingItem next();
+  /// Of the item read last.
+  std::uint64_t offset() const { return itemOffset_; }
+  const Command<S>& command() const { return command_; }
+  std::uint64_t hash() const { return hash_; }
+
+ private:
+  void readEnd(class ByteReader& reader) const;
+
+  std::span<const std::uint8_t> bytes_;
+  S timeStep_{};
+  WorldState<S> world_;
+  std::uint64_t initialHash_ = 0;
+  std::uint64_t ticks_ = 0;
+  std::uint64_t offset_ = 0;
+  std::uint64_t itemOffset_ = 0;
+  std::uint64_t hash_ = 0;
+  Command<S> command_;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class RecordingReader<double>;
+#endif
+extern template class RecordingReader<Fixed>;
+extern template class RecordingReader<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <samestep/command.h>
+#include <samestep/space.h>
+
+namespace samestep {
+
+/// A scene that cannot be used, and where: "arena.json:12: /bodies/3/mass: Body's mass is negative."
+class SceneError : public std::exception {
+ public:
+  /// @param line  from 1; 0 where no line is to blame
+  /// @param path  of the value within the document, as "/bodies/3/mass"
+  SceneError(const std::string& file, std::uint32_t line, const std::string& path, const std::string& reason);
+
+  const char* what() const noexcept override { return text_.c_str(); }
+
+ private:
+  std::string text_;
+};
+
+/// The parts of a scene that all number types share; see docs/formats.md.
+struct SceneSummary {
+  std::string name;
+  std::string about;
+  std::uint64_t ticks = 600;  ///< How long it is worth watching.
+};
+
+/// A scene's files, read but not yet turned into numbers.
+class SceneSource {
+ public:
+  /// Reads a scene by its path (it ends in .json), by its name, or one of a family: "pyramid:40", "soup:500".
+  /// @throws SceneError
+  static SceneSource find(std::string_view nameOrPath);
+  /// Scene and input text from memory, for tests. Files that it names are looked for in the working folder.
+  /// @throws SceneError
+  static SceneSource fromText(std::string_view text, const std::string& file);
+
+  SceneSource(SceneSource&& other) noexcept : document_(std::exchange(other.document_, nullptr)) {}
+  SceneSource& operator=(SceneSource&& other) noexcept {
+    std::swap(document_, other.document_);
+    return *this;
+  }
+  ~SceneSource();
+
+  SceneSummary summary() const;
+
+  struct Document;
+  const Document& document() const { return *document_; }
+
+ private:
+  explicit SceneSource(Document* document) : document_(document) {}
+  Document* document_;
+};
+
+/// The scenes that can be found by name, sorted by name, the families with an example number last.
+/// @throws SceneError where a file in the folder of scenes is none
+std::vector<SceneSummary> listScenes();
+/// Where scenes are looked for by name, in this order: the environment's SAMESTEP_SCENES, where the program
+/// was installed, where it was built.
+std::vector<std::string> sceneFolders();
+
+/// A scene under way: its world, and the commands that its events turn into.
+template <Scalar S>
+class Scene {
+ public:
+  /// @throws SceneError
+  explicit Scene(const SceneSource& source);
+
+  Space<S>& space() { return space_; }
+  const Space<S>& space() const { return space_; }
+  /// Seconds.
+  S timeStep() const { return timeStep_; }
+  /// Steps made so far.
+  std::uint64_t tick() const { return space_.stamp(); }
+
+  /// The next command due before the coming step, or null. It is to be applied before the next call. Events
+  /// for bodies that are gone are left out.
+  const Command<S>* nextCommand();
+  /// Applies the commands that are due, then makes a step.
+  /// @throws what a command or Space::step throws
+  void step();
+
+ private:
+  /// A command whose body is still a name.
+  struct Event {
+    Event(std::uint64_t tickIn, std::uint32_t nameIn, Command<S>&& commandIn)
+        : tick(tickIn), name(nameIn), command(std::move(commandIn)) {}
+    std::uint64_t tick;
+    std::uint32_t name;
+    Command<S> command;
+  };
+  template <Scalar T>
+  friend class SceneBuilder;
+
+  Space<S> space_;
+  S timeStep_{};
+  std::vector<Event> events_;
+  std::vector<BodyId> names_;
+  std::uint64_t next_ = 0;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class Scene<double>;
+#endif
+extern template class Scene<Fixed>;
+extern template class Scene<CheckedFixed>;
+
+}  // namespace samestep

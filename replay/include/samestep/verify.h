@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <samestep/replay.h>
+
+namespace samestep {
+
+/// What replaying a recording showed.
+struct VerifyResult {
+  bool matches = false;
+  /// Steps in the recording.
+  std::uint64_t ticks = 0;
+  /// The first step after which the world's hash is not the recorded one; 0 for the world before the first.
+  std::uint64_t firstWrongTick = 0;
+  std::uint64_t recordedHash = 0;  ///< For that step, or the last one.
+  std::uint64_t computedHash = 0;
+};
+
+/// How verify goes about it.
+struct VerifyOptions {
+  WorldLimits limits{};
+  /// Called after every step; null for none.
+  void (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
+  void* data = nullptr;
+};
+
+/// Replays a recording and compares the hash of every step. A mismatch is a result, not an error.
+/// @throws FormatError, MissingCallback; IllegalBody for a world that cannot be stepped
+template <Scalar S>
+VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
+                    const VerifyOptions& options = {});
+/// The same for a recording of either scalar whose handlers are the named ones.
+/// @throws FormatError also for a scalar that this build lacks
+VerifyResult verify(std::span<const std::uint8_t> bytes, const VerifyOptions& options = {});
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template VerifyResult verify<double>(std::span<const std::uint8_t>, const Wiring<double>&,
+                                            const VerifyOptions&);
+#endif
+extern template VerifyResult verify<Fixed>(std::span<const std::uint8_t>, const Wiring<Fixed>&,
+                                           const VerifyOptions&);
+extern template VerifyResult verify<CheckedFixed>(std::span<const std::uint8_t>, const Wiring<CheckedFixed>&,
+                                                  const VerifyOptions&);
+
+}  // namespace samestep

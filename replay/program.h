@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// What the parts of the program share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <exception>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <samestep/scalar.h>
+
+namespace samestep::program {
+
+/// What the program exits with.
+enum Exit : int {
+  kGood = 0,
+  kMismatch = 1,
+  kUnusable = 2,
+};
+
+/// Something the caller must mend: bad arguments, files that cannot be read or written.
+class Unusable : public std::exception {
+ public:
+  explicit Unusable(std::string reason) : reason_(std::move(reason)) {}
+  const char* what() const noexcept override { return reason_.c_str(); }
+
+ private:
+  std::string reason_;
+};
+
+/// Each adds one word of the command line; running it leaves the exit code in `result`.
+void addScenes(CLI::App& app, int& result);
+void addHash(CLI::App& app, int& result);
+void addRecord(CLI::App& app, int& result);
+void addVerify(CLI::App& app, int& result);
+void addDiff(CLI::App& app, int& result);
+void addDraw(CLI::App& app, int& result);
+
+/// Adds --scalar with the scalars of this build.
+void addScalarOption(CLI::App& app, std::string& scalar);
+
+/// Adds --ticks; 0 stands for not given.
+void addTicksOption(CLI::App& app, std::uint64_t& ticks);
+
+/// Calls visit(S()) for the scalar of that name.
+/// @throws Unusable where this build lacks it
+template <class Visit>
+int withScalar(const std::string& name, Visit&& visit) {
+  if (name == "fixed") return visit(Fixed());
+  if (name == "checked") return visit(CheckedFixed());
+#ifndef SAMESTEP_FIXED_ONLY
+  if (name == "double") return visit(double());
+#endif
+  throw Unusable("this build has no scalar \"" + name + "\"");
+}
+
+/// Shows on a terminal how far long work is: "record: 1200 of 6000 ticks".
+class Progress {
+ public:
+  Progress(const char* what, std::uint64_t total);
+  ~Progress() { clear(); }
+  void at(std::uint64_t done) { at(done, total_); }
+  void at(std::uint64_t done, std::uint64_t total);
+  /// Takes it off the terminal.
+  void clear();
+
+ private:
+
+  const char* what_;
+  std::uint64_t total_;
+  std::int64_t next_;
+  bool terminal_;
+  bool shown_ = false;
+};
+
+/// Milliseconds since some point in the past.
+std::int64_t milliseconds();
+
+/// @throws Unusable
+std::vector<std::uint8_t> readFile(const std::string& path);
+/// Written beside and moved into place, so that a file is whole or not there.
+/// @throws Unusable
+void writeFile(const std::string& path, std::span<const std::uint8_t> bytes);
+void writeFile(const std::string& path, const std::string& text);
+
+/// Says on the error output what is wrong with a file, with the offset of bytes that are malformed.
+void tell(const std::string& file, const std::exception& error);
+
+/// 16 hexadecimal digits.
+std::string hex(std::uint64_t value);
+
+}  // namespace samestep::program

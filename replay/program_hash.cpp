@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+
+#include <samestep/scene.h>
+
+#include "program.h"
+
+namespace samestep::program {
+namespace {
+
+struct Options {
+  std::string scene;
+  std::string scalar = "fixed";
+  std::uint64_t ticks = 0;
+  std::uint64_t every = 1;
+};
+
+template <Scalar S>
+int run(const Options& options) {
+  const SceneSource source = SceneSource::find(options.scene);
+  const std::uint64_t ticks = options.ticks > 0 ? options.ticks : source.summary().ticks;
+  Scene<S> scene(source);
+  Progress progress("hash", ticks);
+  for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
+    scene.step();
+    if (tick % options.every == 0) {
+      std::printf("%llu %s\n", static_cast<unsigned long long>(tick), hex(scene.space().hash()).c_str());
+    }
+    progress.at(tick);
+  }
+  return kGood;
+}
+
+}  // namespace
+
+void addHash(CLI::App& app, int& result) {
+  CLI::App* word = app.add_subcommand("hash", "Run a scene and print a fingerprint of its world after every tick");
+  auto options = std::make_shared<Options>();
+  word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")->required();
+  addScalarOption(*word, options->scalar);
+  addTicksOption(*word, options->ticks);
+  word->add_option("--every", options->every, "Print only every K-th tick")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+      ->capture_default_str();
+  word->callback([options, &result] {
+    result = withScalar(options->scalar, [&](auto scalar) { return run<decltype(scalar)>(*options); });
+  });
+}
+
+}  // namespace samestep::program

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/replay.h>
+
+#include "require_ieee.h"
+
+namespace samestep {
+
+template <Scalar S>
+Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const WorldLimits& limits)
+    : reader_(bytes, limits), wiring_(wiring), limits_(limits), recordedHash_(reader_.initialHash()) {
+  if (wiring_.connect != nullptr) wiring_.connect(space_, wiring_.data);
+  space_.adopt(reader_.initialWorld());
+}
+
+template <Scalar S>
+void Replay<S>::applyOne(const Command<S>& command) {
+#if defined(__cpp_exceptions)
+  try {
+    apply(space_, command, wiring_);
+  } catch (const MissingCallback&) {
+    throw;
+  } catch (const Error& error) {
+    // Recorded commands were accepted once.
+    failFormat(reader_.offset(), error.what());
+  }
+#else
+  apply(space_, command, wiring_);
+#endif
+}
+
+template <Scalar S>
+bool Replay<S>::applyCommands() {
+  if (applied_ || ended_) return !ended_;
+  commands_.clear();
+  RecordingItem item = reader_.next();
+  for (; item == RecordingItem::command; item = reader_.next()) {
+    applyOne(reader_.command());
+    commands_.push_back(reader_.command());
+    if (space_.state().bodies.slots() > limits_.bodies || space_.state().shapes.slots() > limits_.shapes) {
+      failFormat(reader_.offset(), "more bodies or shapes than allowed");
+    }
+  }
+  applied_ = true;
+  ended_ = item == RecordingItem::end;
+  return !ended_;
+}
+
+template <Scalar S>
+bool Replay<S>::step() {
+  if (!applyCommands()) return false;
+  applied_ = false;
+  space_.step(reader_.timeStep());
+  if (space_.state().pairs.size() > limits_.pairs) failFormat(reader_.offset(), "more pairs than allowed");
+  recordedHash_ = reader_.hash();
+  ++tick_;
+  return true;
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class Replay<double>;
+#endif
+template class Replay<Fixed>;
+template class Replay<CheckedFixed>;
+
+}  // namespace samestep

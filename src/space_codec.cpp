@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// Worlds to bytes and, with everything checked, back.
+#include <samestep/space_codec.h>
+
+#include <tuple>
+#include <utility>
+
+#include "canonical_bytes.h"
+#include "canonical_reader.h"
+#include "require_ieee.h"
+
+namespace samestep {
+namespace {
+
+template <Scalar S>
+const char* flawOf(const Settings<S>& settings) {
+  const auto in = [](S value, S low, S high) { return value >= low && value <= high; };
+  const bool good = settings.iterations >= 1 && settings.iterations <= 1000 &&
+                    within(settings.gravity, kMaxAcceleration<S>) && in(settings.damping, S(0), S(1)) &&
+                    in(settings.collisionSlop, S(0), S(256)) && in(settings.collisionBias, S(0), S(1)) &&
+                    settings.worldExtent > S(0) && settings.worldExtent <= kMaxWorldExtent<S>;
+  return good ? nullptr : "a setting is out of range";
+}
+
+template <Scalar S>
+const char* flawOf(const WorldState<S>& world, ShapeId id, const Shape<S>& shape) {
+  if (shape.id() != id) return "a shape has another's id";
+  if (!shape.wellFormed()) return "a shape is malformed";
+  const Body<S>* body = world.bodies.find(shape.body());
+  if (body == nullptr) return "a shape is on a body that does not exist";
+  if (body->type() != BodyType::staticBody && shape.extent() > S(kMaxDynamicExtent)) {
+    return "a shape of a moving body is too large";
+  }
+  return nullptr;
+}
+
+template <Scalar S>
+const char* flawOf(const Contact<S>& contact) {
+  // Points of shapes at the end of their range, on bodies at the end of theirs.
+  const S far = S(1 << 23);
+  const bool good = within(contact.pointA, far) && within(contact.pointB, far) &&
+                    within(contact.normalSpeed, kMaxForce<S>) && within(contact.tangentSpeed, kMaxForce<S>);
+  return good ? nullptr : "a contact is out of range";
+}
+
+template <Scalar S>
+const char* flawOf(const WorldState<S>& world, const Pair<S>& pair) {
+  const Shape<S>* a = world.shapes.find(pair.a);
+  const Shape<S>* b = world.shapes.find(pair.b);
+  if (a == nullptr || b == nullptr) return "a pair names a shape that does not exist";
+  if (a->body() == b->body()) return "a pair is of one body";
+  if (pair.count > kMaxContactsPerPair || pair.state > ArbiterState::cached || pair.solved > 1 ||
+      pair.stamp > world.stamp) {
+    return "a pair is malformed";
+  }
+  const S most(kMaxMaterial);
+  const S unit = ratio<S>(1026, 1024);
+  if (!within(pair.normal, unit) || !within(pair.surfaceVelocity, most * S(8)) || !(pair.elasticity >= S(0)) ||
+      !(pair.elasticity <= most) || !(pair.friction >= S(0)) || !(pair.friction <= most)) {
+    return "a pair is out of range";
+  }
+  for (const Contact<S>& contact : pair.contacts) {
+    if (const char* flaw = flawOf(contact)) return flaw;
+  }
+  return nullptr;
+}
+
+const char* flawOf(const HandlerBinding& binding) {
+  const bool good = binding.kind <= HandlerBinding::Kind::fallback && binding.number != 0;
+  return good ? nullptr : "a handler is malformed";
+}
+
+bool inOrder(const HandlerBinding& a, const HandlerBinding& b) {
+  return std::tuple(a.kind, a.typeA, a.typeB) < std::tuple(b.kind, b.typeA, b.typeB);
+}
+
+template <Scalar S>
+bool inOrder(const Pair<S>& a, const Pair<S>& b) {
+  return std::pair(a.a.index, a.b.index) < std::pair(b.a.index, b.b.index);
+}
+
+/// What settings, clock and static body must be; null if they are.
+template <Scalar S>
+const char* flawOfFrame(const WorldState<S>& world) {
+  if (const char* flaw = flawOf(world.settings)) return flaw;
+  if (!(world.timeStep >= S(0) && world.timeStep <= kMaxTimeStep<S>)) return "the time step is out of range";
+  const Body<S>* fixed = world.bodies.find(world.staticBody);
+  if (fixed == nullptr || fixed->type() != BodyType::staticBody) return "there is no static body";
+  return nullptr;
+}
+
+/// Reads one world.
+template <Scalar S>
+class WorldReader {
+ public:
+  WorldReader(ByteReader& bytes, const WorldLimits& limits) : bytes_(bytes), read_(bytes), limits_(limits) {}
+
+  WorldState<S> world() {
+    const std::uint64_t start = bytes_.offset();
+    read_.get(world_.settings);
+    read_.get(world_.stamp);
+    read_.get(world_.timeStep);
+    read_.get(world_.staticBody);
+    slots(world_.bodies, limits_.bodies, "more bodies than allowed", [](BodyId, Body<S>& body) {
+      body.derive();
+      return body.wellFormed() ? nullptr : "a body is malformed";
+    });
+    if (const char* flaw = flawOfFrame(world_)) failFormat(start, flaw);
+    slots(world_.shapes, limits_.shapes, "more shapes than allowed",
+          [this](ShapeId id, Shape<S>& shape) { return flawOf(world_, id, shape); });
+    list(world_.pairs, limits_.pairs, "more pairs than allowed",
+         [this](const Pair<S>& pair) { return flawOf(world_, pair); });
+    list(world_.handlers, limits_.handlers, "more handlers than allowed",
+         [](const HandlerBinding& binding) { return flawOf(binding); });
+    return std::move(world_);
+  }
+
+ private:
+  template <class T, class IdType, class Flaw>
+  void slots(SlotMap<T, IdType>& map, std::uint32_t most, const char* tooMany, Flaw&& flawIn) {
+    const std::uint64_t start = bytes_.offset();
+    const auto count = read_.next<std::uint32_t>();
+    // Every slot takes four bytes at least.
+    if (count > most || count > bytes_.remaining() / 4) failFormat(start, tooMany);
+    std::vector<T> values;
+    std::vector<std::uint32_t> generations;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint64_t at = bytes_.offset();
+      generations.push_back(read_.next<std::uint32_t>());
+      values.emplace_back();
+      if ((generations.back() & 1) == 0) continue;
+      read_.get(values.back());
+      IdType id;
+      id.index = i;
+      id.generation = generations.back();
+      if (const char* flaw = flawIn(id, values.back())) failFormat(at, flaw);
+    }
+    const std::uint64_t freeStart = bytes_.offset();
+    const auto freeCount = read_.next<std::uint32_t>();
+    if (freeCount > count) failFormat(freeStart, "more free slots than slots");
+    std::vector<std::uint32_t> freeList;
+    for (std::uint32_t i = 0; i < freeCount; ++i) freeList.push_back(read_.next<std::uint32_t>());
+    if (!map.restore(std::move(values), std::move(generations), std::move(freeList))) {
+      failFormat(freeStart, "the free slots are not those of the list");
+    }
+  }
+
+  template <class T, class Flaw>
+  void list(std::vector<T>& items, std::uint32_t most, const char* tooMany, Flaw&& flawIn) {
+    const std::uint64_t start = bytes_.offset();
+    const auto count = read_.next<std::uint64_t>();
+    if (count > most || count > bytes_.remaining()) failFormat(start, tooMany);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::uint64_t at = bytes_.offset();
+      items.emplace_back();
+      read_.get(items.back());
+      if (const char* flaw = flawIn(items.back())) failFormat(at, flaw);
+      if (i > 0 && !inOrder(items[i - 1], items[i])) failFormat(at, "a list is not in order");
+    }
+  }
+
+  ByteReader& bytes_;
+  CanonicalReader read_;
+  const WorldLimits& limits_;
+  WorldState<S> world_;
+};
+
+}  // namespace
+
+template <Scalar S>
+void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes) {
+  BytesSink sink(bytes);
+  writeWorld(sink, world);
+}
+
+template <Scalar S>
+WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset,
+                          const WorldLimits& limits) {
+  ByteReader reader(bytes, offset);
+  WorldState<S> world = WorldReader<S>(reader, limits).world();
+  offset = reader.offset();
+  return world;
+}
+
+template <Scalar S>
+const char* flawOf(const WorldState<S>& world, const WorldLimits& limits) {
+  if (world.bodies.slots() > limits.bodies) return "more bodies than allowed";
+  if (world.shapes.slots() > limits.shapes) return "more shapes than allowed";
+  if (world.pairs.size() > limits.pairs) return "more pairs than allowed";
+  if (world.handlers.size() > limits.handlers) return "more handlers than allowed";
+  const char* flaw = flawOfFrame(world);
+  world.bodies.each([&](BodyId, const Body<S>& body) {
+    if (flaw == nullptr && !body.wellFormed()) flaw = "a body is malformed";
+  });
+  world.shapes.each([&](ShapeId id, const Shape<S>& shape) {
+    if (flaw == nullptr) flaw = flawOf(world, id, shape);
+  });
+  for (const Pair<S>& pair : world.pairs) {
+    if (flaw == nullptr) flaw = flawOf(world, pair);
+  }
+  return flaw;
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template void encodeWorld<double>(const WorldState<double>&, std::vector<std::uint8_t>&);
+template WorldState<double> decodeWorld<double>(std::span<const std::uint8_t>, std::uint64_t&,
+                                                const WorldLimits&);
+template const char* flawOf<double>(const WorldState<double>&, const WorldLimits&);
+#endif
+template void encodeWorld<Fixed>(const WorldState<Fixed>&, std::vector<std::uint8_t>&);
+template WorldState<Fixed> decodeWorld<Fixed>(std::span<const std::uint8_t>, std::uint64_t&,
+                                              const WorldLimits&);
+template const char* flawOf<Fixed>(const WorldState<Fixed>&, const WorldLimits&);
+template void encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&, std::vector<std::uint8_t>&);
+template WorldState<CheckedFixed> decodeWorld<CheckedFixed>(std::span<const std::uint8_t>, std::uint64_t&,
+                                                            const WorldLimits&);
+template const char* flawOf<CheckedFixed>(const WorldState<CheckedFixed>&, const WorldLimits&);
+
+}  // namespace samestep

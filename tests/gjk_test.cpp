@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "gjk.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include <samestep/error.h>
+#include <samestep/poly_shape.h>
+#include <samestep/segment_shape.h>
+
+#include "epa.h"
+#include "support/random.h"
+#include "support/scalars.h"
+#include "support_faces.h"
+
+namespace samestep {
+namespace {
+
+template <class S>
+class GjkTest : public ::testing::Test {
+ protected:
+  static Shape<S> randomPoly(Random& random, int corners) {
+    std::vector<Vector<S>> points = {{S(-2), S(-2)}, {S(2), S(-1)}, {S(0), S(2)}};
+    for (int i = 3; i < corners; ++i) points.push_back({random.number<S>(-2, 2), random.number<S>(-2, 2)});
+    return polyShape<S>(BodyId(), points);
+  }
+  static Transform<S> randomPose(Random& random, int reach) {
+    return Transform<S>::rigid({random.number<S>(-reach, reach), random.number<S>(-reach, reach)},
+                               random.number<S>(-3, 3));
+  }
+  static SupportPair<S> pairOf(const Placement<S>& a, const Placement<S>& b) {
+    return {SupportShape<S>(*a), SupportShape<S>(*b)};
+  }
+  static ClosestPoints<S> search(const Placement<S>& a, const Placement<S>& b, std::uint32_t start = 0) {
+    CollisionStats stats;
+    return gjk(pairOf(a, b), start, Vector<S>(), &stats);
+  }
+
+  static double distanceToSegment(double px, double py, double ax, double ay, double bx, double by) {
+    const double dx = bx - ax, dy = by - ay;
+    const double t = std::fmin(1, std::fmax(0, ((px - ax) * dx + (py - ay) * dy) / (dx * dx + dy * dy)));
+    return std::hypot(px - ax - dx * t, py - ay - dy * t);
+  }
+  /// The least distance of any vertex of one from any edge of the other.
+  static double bruteDistance(const Placement<S>& a, const Placement<S>& b) {
+    double least = 1e300;
+    for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+      const PlacedShape<S>&points = **from, &edges = **to;
+      for (int i = 0; i < points.count; ++i) {
+        for (int j = 0; j < edges.count; ++j) {
+          const Vector<S> p = points.planes[i].v0, q = edges.planes[j].v0,
+                          r = edges.planes[(j + 1) % edges.count].v0;
+          least = std::fmin(least, distanceToSegment(double(p.x), double(p.y), double(q.x), double(q.y),
+                                                     double(r.x), double(r.y)));
+        }
+      }
+    }
+    return least;
+  }
+};
+TYPED_TEST_SUITE(GjkTest, AllScalarsAndChecked);
+
+TYPED_TEST(GjkTest, FindsTheDistanceOfShapesApart) {
+  using S = TypeParam;
+  Random random(21);
+  int apart = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Placement<S> a(TestFixture::randomPoly(random, 3 + i % 20), TestFixture::randomPose(random, 5));
+    const Placement<S> b(TestFixture::randomPoly(random, 3 + i % 7), TestFixture::randomPose(random, 5));
+    const ClosestPoints<S> found = TestFixture::search(a, b);
+    if (found.distance <= S(0)) continue;
+    ++apart;
+    EXPECT_NEAR(double(found.distance), TestFixture::bruteDistance(a, b), 1e-8) << i;
+    EXPECT_NEAR(double(length(found.normal)), 1, 1e-9);
+  }
+  EXPECT_GT(apart, 300);
+}
+
+// The same overlap by two ways: growing a polygon in the difference, and trying every face.
+TYPED_TEST(GjkTest, FindsTheOverlapThatTheFacesHave) {
+  using S = TypeParam;
+  Random random(22);
+  int overlapping = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Placement<S> a(TestFixture::randomPoly(random, 3 + i % 20), TestFixture::randomPose(random, 1));
+    const Placement<S> b(TestFixture::randomPoly(random, 3 + i % 7), TestFixture::randomPose(random, 1));
+    const ClosestPoints<S> found = TestFixture::search(a, b);
+    const FaceAxis<S> axis = bestFace(*a, *b, S(100), 0);
+    EXPECT_EQ(found.distance <= S(0), axis.separation <= S(0)) << i;
+    if (axis.separation > S(0)) continue;
+    ++overlapping;
+    EXPECT_NEAR(double(found.distance), double(axis.separation), 1e-8) << i;
+    const Vector<S> normal = axis.onB ? -b->planes[axis.face].n : a->planes[axis.face].n;
+    EXPECT_LE(double(length(found.normal - normal)), 1e-7) << i;
+  }
+  EXPECT_GT(overlapping, 700);
+}
+
+TYPED_TEST(GjkTest, EveryStartLeadsToTheSameDistance) {
+  using S = TypeParam;
+  Random random(23);
+  for (int i = 0; i < 300; ++i) {
+    const Placement<S> a(TestFixture::randomPoly(random, 12), TestFixture::randomPose(random, 3));
+    const Placement<S> b(TestFixture::randomPoly(random, 12), TestFixture::randomPose(random, 3));
+    const ClosestPoints<S> cold = TestFixture::search(a, b);
+    for (int k = 0; k < 8; ++k) {
+      const std::uint32_t start = static_cast<std::uint32_t>(random.next()) & 0x07070707u;
+      EXPECT_LE(abs(TestFixture::search(a, b, start).distance - cold.distance), S(0x1p-28)) << i;
+    }
+    EXPECT_EQ(TestFixture::search(a, b, cold.id).distance, cold.distance) << i;
+  }
+}
+
+TYPED_TEST(GjkTest, KnowsTheVerticesThatAreNearest) {
+  using S = TypeParam;
+  const Shape<S> box = boxShape<S>(BodyId(), S(2), S(2));
+  const Placement<S> a(box, Transform<S>()), b(box, Transform<S>::translation({S(5), S(6)}));
+  const ClosestPoints<S> corner = TestFixture::search(a, b);
+  EXPECT_EQ(corner.vertexA, 1);  // Top right.
+  EXPECT_EQ(corner.vertexB, 3);  // Bottom left.
+  EXPECT_EQ(corner.distance, S(5));
+  EXPECT_EQ(corner.normal, Vector<S>(ratio<S>(3, 5), ratio<S>(4, 5)));
+
+  const Placement<S> turned(box, Transform<S>::rigid({S(4), S(0)}, normalize(Vector<S>(S(1), S(1)))));
+  const ClosestPoints<S> face = TestFixture::search(a, turned);
+  EXPECT_EQ(face.vertexA, -1);
+  EXPECT_GE(face.vertexB, 0);
+  EXPECT_EQ(face.normal, Vector<S>(S(1), S(0)));
+}
+
+TYPED_TEST(GjkTest, VerticesInOnePlaceHaveDistanceZeroAndAUnitNormal) {
+  using S = TypeParam;
+  const Shape<S> box = boxShape<S>(BodyId(), S(2), S(2));
+  for (const int x : {-2, 2}) {
+    for (const int y : {-2, 2}) {
+      const Placement<S> a(box, Transform<S>()), b(box, Transform<S>::translation({S(x), S(y)}));
+      const ClosestPoints<S> found = TestFixture::search(a, b);
+      EXPECT_EQ(found.distance, S(0));
+      EXPECT_EQ(length(found.normal), S(1));
+      // It separates them: all of B lies ahead of it.
+      EXPECT_GE(dot(found.normal, Vector<S>(S(x), S(y))), S(0));
+    }
+  }
+}
+
+TYPED_TEST(GjkTest, SegmentsInOneLineHaveTheDistanceOfTheirEnds) {
+  using S = TypeParam;
+  const Shape<S> line = segmentShape<S>(BodyId(), {S(0), S(0)}, {S(2), S(0)});
+  const Placement<S> a(line, Transform<S>()), b(line, Transform<S>::translation({S(5), S(0)}));
+  const ClosestPoints<S> found = TestFixture::search(a, b);
+  EXPECT_EQ(found.distance, S(3));
+  EXPECT_EQ(found.normal, Vector<S>(S(1), S(0)));
+  EXPECT_EQ(found.vertexA, 1);
+  EXPECT_EQ(found.vertexB, 0);
+}
+
+// MIS section 13, SameVertices.
+TYPED_TEST(GjkTest, EpaOnAPolygonWithoutLengthIsAnInternalError) {
+  using S = TypeParam;
+  const Placement<S> a(boxShape<S>(BodyId(), S(2), S(2)), Transform<S>());
+  const SupportPair<S> pair = TestFixture::pairOf(a, a);
+  const MinkowskiPoint<S> v = pair.vertex(0, 2), w = pair.vertex(0, 3);
+  EXPECT_THROW(epa<S>(pair, v, v, w, nullptr), SameVertices);
+}
+
+}  // namespace
+}  // namespace samestep
