@@ -3,8 +3,8 @@
 
 #include <samestep/error.h>
 
+#include "contact_row.h"
 #include "require_ieee.h"
-#include "sequential_impulse.h"
 
 namespace samestep {
 
@@ -93,7 +93,7 @@ Vector<S> Arbiter<S>::totalImpulse() const {
   const Vector<S> n = pair_.normal;
   for (int i = 0; i < count(); ++i) {
     const Contact<S>& contact = pair_.contacts[i];
-    const Vector<S> speed = rotate(n, Vector<S>(contact.normalSpeed, contact.tangentSpeed));
+    const Vector<S> speed = rotate(n, Vector<S>(contact.normalTotal, contact.tangentTotal));
     x = x + toScaled(speed.x);
     y = y + toScaled(speed.y);
   }
@@ -118,8 +118,8 @@ S Arbiter<S>::totalKE() const {
     const Vector<S> armB = contact.pointB - b.worldCenter();
     const Scaled<S> normalK = toScaled(effectiveInverseMass(response, cross(armA, n), cross(armB, n)));
     const Scaled<S> tangentK = toScaled(effectiveInverseMass(response, cross(armA, t), cross(armB, t)));
-    const Scaled<S> normal = toScaled(contact.normalSpeed);
-    const Scaled<S> tangent = toScaled(contact.tangentSpeed);
+    const Scaled<S> normal = toScaled(contact.normalTotal);
+    const Scaled<S> tangent = toScaled(contact.tangentTotal);
     sum = sum + toScaled(loss) * normal * normal * normalK + tangent * tangent * tangentK;
   }
   return toScalar<S>(sum * lighterMass(a, b));

@@ -29,6 +29,9 @@ struct Contact {
   /// the lighter body, m/s: at full precision whatever the masses are.
   S normalSpeed{};
   S tangentSpeed{};
+  /// The whole impulses of the last step in the same measure: with substeps the sums over all of them.
+  S normalTotal{};
+  S tangentTotal{};
   /// Which features touch: tells which point of the last step this one continues.
   std::uint32_t feature = 0;
   std::uint32_t unused = 0;
@@ -39,6 +42,8 @@ struct Contact {
     visit("pointB", self.pointB);
     visit("normalSpeed", self.normalSpeed);
     visit("tangentSpeed", self.tangentSpeed);
+    visit("normalTotal", self.normalTotal);
+    visit("tangentTotal", self.tangentTotal);
     visit("feature", self.feature);
   }
 };
