@@ -27,7 +27,8 @@ struct FromDouble {
 
 /// value * 2^bits to nearest, from the bits of the double: no floating arithmetic that flags could change.
 constexpr FromDouble fromDouble(double value, int bits, std::int64_t least, std::int64_t most) {
-  const auto pattern = std::bit_cast<std::uint64_t>(value);
+  // Emscripten's library has no std::bit_cast.
+  const auto pattern = __builtin_bit_cast(std::uint64_t, value);
   const bool negative = pattern >> 63 != 0;
   const int biased = static_cast<int>(pattern >> 52 & 0x7ff);
   const std::uint64_t fraction = pattern & ((std::uint64_t{1} << 52) - 1);
