@@ -18,7 +18,7 @@ struct PairResponse {
   S massA{}, massB{};      ///< Inverse masses, in [0, 1].
   S momentA{}, momentB{};  ///< Inverse moments, 1/m^2.
 
-  /// To impulses at the given places, seen from the centres: moments far too small for them are held.
+  /// To an impulse at the given places: moments far too small for them are held.
   PairResponse at(const Vector<S>& armA, const Vector<S>& armB) const;
 };
 

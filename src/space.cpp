@@ -388,8 +388,9 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
   Shape<S> next = shape;
   next.attach(id, impl_->serial);
   next.setBody(kept.body());
+  const std::span<const Vector<S>> before = kept.vertices(), after = next.vertices();
   const bool sameGeometry = next.type() == kept.type() && next.radius() == kept.radius() &&
-                            std::ranges::equal(next.vertices(), kept.vertices());
+                            std::equal(before.begin(), before.end(), after.begin(), after.end());
   const bool sameMass = next.massInfo() == kept.massInfo();
   if (!sameGeometry || !sameMass) {
     requireUnlocked();
