@@ -108,8 +108,9 @@ class Artist {
     out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + std::to_string(kPixels) + "\" height=\"" +
            std::to_string(pixelsHigh) + "\" viewBox=\"" + number(frame_.left) + " " + number(top) + " " +
            number(width_) + " " + number(total) + "\" font-family=\"sans-serif\">\n";
-    out_ += "<defs><marker id=\"tip\" orient=\"auto\" markerWidth=\"5\" markerHeight=\"5\" refX=\"3\" refY=\"2\">"
-            "<path d=\"M0,0 L4,2 L0,4 z\" fill=\"#27408b\"/></marker></defs>\n";
+    out_ +=
+        "<defs><marker id=\"tip\" orient=\"auto\" markerWidth=\"5\" markerHeight=\"5\" refX=\"3\" refY=\"2\">"
+        "<path d=\"M0,0 L4,2 L0,4 z\" fill=\"#27408b\"/></marker></defs>\n";
     out_ += "<rect" + place("x", "y", {frame_.left, -top}) + attribute("width", width_) +
             attribute("height", total) + " fill=\"#fcfbf8\"/>\n";
   }
@@ -124,7 +125,8 @@ class Artist {
   }
 
   void layer(BodyType type) {
-    out_ += "<g" + attribute("stroke-width", unit_) + " stroke-linejoin=\"round\" stroke-linecap=\"round\">\n";
+    out_ +=
+        "<g" + attribute("stroke-width", unit_) + " stroke-linejoin=\"round\" stroke-linecap=\"round\">\n";
     space_.eachShape([&](const Shape<S>& shape) {
       if (bodyOf(shape).type() == type) outline(shape);
     });
@@ -159,29 +161,33 @@ class Artist {
     }
   }
 
-  void circle(const Shape<S>& shape, const Transform<S>& pose, const Paint& colours, const std::string& style) {
+  void circle(const Shape<S>& shape, const Transform<S>& pose, const Paint& colours,
+              const std::string& style) {
     const Vector<S> center = transformPoint(pose, shape.vertices()[0]);
     const Vector<S> rim = center + transformVect(pose, Vector<S>(shape.radius(), S(0)));
-    out_ += "<circle" + place("cx", "cy", center) + attribute("r", shape.radius()) + paint(colours) + style + "/>";
-    out_ += "<line" + place("x1", "y1", center) + place("x2", "y2", rim) + " stroke=\"" + colours.line + "\"/>\n";
+    out_ += "<circle" + place("cx", "cy", center) + attribute("r", shape.radius()) + paint(colours) + style +
+            "/>";
+    out_ +=
+        "<line" + place("x1", "y1", center) + place("x2", "y2", rim) + " stroke=\"" + colours.line + "\"/>\n";
   }
 
   void segment(const Shape<S>& shape, const Transform<S>& pose, const Paint& colours) {
     const S thickness = max(shape.radius() * S(2), unit_ * S(2));
     out_ += "<line" + place("x1", "y1", transformPoint(pose, shape.vertices()[0])) +
-            place("x2", "y2", transformPoint(pose, shape.vertices()[1])) + " stroke=\"" + colours.fill + "\"" +
-            attribute("stroke-width", thickness) + "/>\n";
+            place("x2", "y2", transformPoint(pose, shape.vertices()[1])) + " stroke=\"" + colours.fill +
+            "\"" + attribute("stroke-width", thickness) + "/>\n";
   }
 
-  void polygon(const Shape<S>& shape, const Transform<S>& pose, const Paint& colours, const std::string& style) {
+  void polygon(const Shape<S>& shape, const Transform<S>& pose, const Paint& colours,
+               const std::string& style) {
     std::string points;
     for (const Vector<S>& vertex : shape.vertices()) {
       const Vector<S> at = transformPoint(pose, vertex);
       points += (points.empty() ? "" : " ") + number(at.x) + "," + number(-at.y);
     }
     const auto filled = [&](const char* fill, const char* line, S thickness, const std::string& more) {
-      out_ += std::string("<polygon points=\"") + points + "\" fill=\"" + fill + "\" stroke=\"" + line + "\"" +
-              attribute("stroke-width", thickness) + more + "/>";
+      out_ += std::string("<polygon points=\"") + points + "\" fill=\"" + fill + "\" stroke=\"" + line +
+              "\"" + attribute("stroke-width", thickness) + more + "/>";
     };
     // The rounding is a thick line; a thicker one beneath it is its edge.
     if (shape.radius() > S(0)) {
@@ -194,13 +200,14 @@ class Artist {
   }
 
   void velocities() {
-    out_ += "<g stroke=\"#27408b\" stroke-opacity=\"0.8\"" + attribute("stroke-width", unit_ * ratio<S>(3, 2)) +
-            " marker-end=\"url(#tip)\">\n";
+    out_ += "<g stroke=\"#27408b\" stroke-opacity=\"0.8\"" +
+            attribute("stroke-width", unit_ * ratio<S>(3, 2)) + " marker-end=\"url(#tip)\">\n";
     space_.eachBody([&](const Body<S>& body) {
       const Vector<S> reach = body.velocity() * ratio<S>(1, 10);
       // Shorter than its own tip, an arrow says nothing.
       if (max(abs(reach.x), abs(reach.y)) < unit_ * S(4)) return;
-      out_ += "<line" + place("x1", "y1", body.worldCenter()) + place("x2", "y2", body.worldCenter() + reach) + "/>\n";
+      out_ += "<line" + place("x1", "y1", body.worldCenter()) +
+              place("x2", "y2", body.worldCenter() + reach) + "/>\n";
     });
     out_ += "</g>\n";
   }
@@ -209,8 +216,8 @@ class Artist {
     out_ += "<g fill=\"#d42a2a\" stroke=\"#d42a2a\"" + attribute("stroke-width", unit_) + ">\n";
     const WorldState<S>& world = space_.state();
     for (const Pair<S>& pair : world.pairs) {
-      const bool touches = pair.stamp == world.stamp && (pair.state == ArbiterState::firstCollision ||
-                                                         pair.state == ArbiterState::normal);
+      const bool touches = pair.stamp == world.stamp &&
+                           (pair.state == ArbiterState::firstCollision || pair.state == ArbiterState::normal);
       for (int i = 0; touches && i < pair.count; ++i) {
         const Vector<S> at = (pair.contacts[i].pointA + pair.contacts[i].pointB) * ratio<S>(1, 2);
         out_ += "<circle" + place("cx", "cy", at) + attribute("r", unit_ * S(2)) + "/><line" +
@@ -235,8 +242,8 @@ class Artist {
       });
       const S size = min(room * ratio<S>(2, 5), unit_ * S(14));
       if (size < unit_ * S(3)) return;
-      out_ += "<text" + place("x", "y", at - Vector<S>(S(0), size * ratio<S>(1, 3))) + attribute("font-size", size) +
-              ">" + std::to_string(body.id().index) + "</text>\n";
+      out_ += "<text" + place("x", "y", at - Vector<S>(S(0), size * ratio<S>(1, 3))) +
+              attribute("font-size", size) + ">" + std::to_string(body.id().index) + "</text>\n";
     });
     out_ += "</g>\n";
   }

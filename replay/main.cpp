@@ -12,8 +12,9 @@ namespace {
 
 std::string versionText() {
   using namespace samestep;
-  return "samestep " + std::string(version()) + "\nsimulation revision " + std::to_string(kSimulationRevision) +
-         "\nscalars " + std::string(builtScalars()) + "\ncompiler " + std::string(compiler());
+  return "samestep " + std::string(version()) + "\nsimulation revision " +
+         std::to_string(kSimulationRevision) + "\nscalars " + std::string(builtScalars()) + "\ncompiler " +
+         std::string(compiler());
 }
 
 }  // namespace

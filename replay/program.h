@@ -74,7 +74,6 @@ class Progress {
   void clear();
 
  private:
-
   const char* what_;
   std::uint64_t total_;
   std::int64_t next_;

@@ -61,8 +61,8 @@ void reportWorlds(const ReplayDifference& difference) {
                 difference.stage.c_str());
   }
   for (const FieldDifference& field : difference.fields) {
-    std::printf("  %s, %s\n    A: %s\n    B: %s\n", field.object.c_str(), field.field.c_str(), field.a.c_str(),
-                field.b.c_str());
+    std::printf("  %s, %s\n    A: %s\n    B: %s\n", field.object.c_str(), field.field.c_str(),
+                field.a.c_str(), field.b.c_str());
   }
 }
 

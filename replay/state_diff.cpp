@@ -53,7 +53,8 @@ class FieldLister {
   }
   template <class Overflow>
   void list(const std::string& name, const BasicFixed<std::int64_t, 32, Overflow>& value) {
-    fields.push_back({name, formatDecimal(value) + " (" + hexBits(static_cast<std::uint64_t>(value.raw())) + ")"});
+    fields.push_back(
+        {name, formatDecimal(value) + " (" + hexBits(static_cast<std::uint64_t>(value.raw())) + ")"});
   }
   template <Scalar S>
   void list(const std::string& name, const Vector<S>& value) {
@@ -62,9 +63,9 @@ class FieldLister {
   }
   template <class Tag>
   void list(const std::string& name, const Id<Tag>& id) {
-    fields.push_back({name, id.valid() ? std::to_string(id.index) + " (generation " +
-                                             std::to_string(id.generation) + ")"
-                                       : "none"});
+    fields.push_back(
+        {name, id.valid() ? std::to_string(id.index) + " (generation " + std::to_string(id.generation) + ")"
+                          : "none"});
   }
   template <class T>
   requires std::is_enum_v<T>
@@ -140,7 +141,8 @@ class Collector {
       }
     }
     const auto text = [](const Map& map) {
-      return std::to_string(map.nextId().index) + " (generation " + std::to_string(map.nextId().generation) + ")";
+      return std::to_string(map.nextId().index) + " (generation " + std::to_string(map.nextId().generation) +
+             ")";
     };
     if (text(a) != text(b)) add("free list", "next id", text(a), text(b));
   }
@@ -205,7 +207,8 @@ std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldStat
   Collector all(most);
   all.compare(a.settings, b.settings, [] { return "settings"; });
   all.compare(Frame<S>{a}, Frame<S>{b}, [] { return "clock"; });
-  all.compareSlots(a.bodies, b.bodies, [](const auto&, std::uint32_t i) { return "body " + std::to_string(i); });
+  all.compareSlots(a.bodies, b.bodies,
+                   [](const auto&, std::uint32_t i) { return "body " + std::to_string(i); });
   all.compareSlots(a.shapes, b.shapes, [](const auto& shapes, std::uint32_t i) {
     return "shape " + std::to_string(i) + " of body " + std::to_string(shapes.valueAt(i).body().index);
   });
@@ -221,13 +224,16 @@ struct Describer {
   template <class T>
   std::string operator()(const T& plain) const {
     std::string text;
-    for (const Field& field : fieldsOf(plain)) text += (text.empty() ? "" : ", ") + field.name + " " + field.text;
+    for (const Field& field : fieldsOf(plain))
+      text += (text.empty() ? "" : ", ") + field.name + " " + field.text;
     return text;
   }
   std::string operator()(const Spawn<S>& spawn) const {
     return (*this)(spawn.body) + ", " + std::to_string(spawn.shapes.size()) + " shapes";
   }
-  std::string operator()(const UserInput& input) const { return std::to_string(input.bytes.size()) + " bytes"; }
+  std::string operator()(const UserInput& input) const {
+    return std::to_string(input.bytes.size()) + " bytes";
+  }
 };
 
 }  // namespace
@@ -238,15 +244,16 @@ std::string describe(const Command<S>& command) {
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
-template std::vector<FieldDifference> differences<double>(const WorldState<double>&, const WorldState<double>&,
-                                                          std::uint32_t);
+template std::vector<FieldDifference> differences<double>(const WorldState<double>&,
+                                                          const WorldState<double>&, std::uint32_t);
 template std::string describe<double>(const Command<double>&);
 #endif
 template std::vector<FieldDifference> differences<Fixed>(const WorldState<Fixed>&, const WorldState<Fixed>&,
                                                          std::uint32_t);
 template std::string describe<Fixed>(const Command<Fixed>&);
 template std::vector<FieldDifference> differences<CheckedFixed>(const WorldState<CheckedFixed>&,
-                                                                const WorldState<CheckedFixed>&, std::uint32_t);
+                                                                const WorldState<CheckedFixed>&,
+                                                                std::uint32_t);
 template std::string describe<CheckedFixed>(const Command<CheckedFixed>&);
 
 }  // namespace samestep

@@ -212,7 +212,7 @@ class Body {
   }
   /// Computes what follows from the fields.
   void derive();
-  /// Whether the record could have been made by the functions of this library: for what was read from outside.
+  /// Whether the record could have been made by the functions of this library: for bytes from outside.
   bool wellFormed() const;
 
  private:

@@ -17,7 +17,7 @@ struct FieldDifference {
   std::string b;
 };
 
-/// The fields in which two worlds differ, at most `most`, in the order of the canonical encoding: settings and
+/// The fields in which two worlds differ, at most `most`, in canonical order: settings and
 /// clock, bodies, shapes, pairs, handlers, each by rising id.
 template <Scalar S>
 std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldState<S>& b,
