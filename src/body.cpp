@@ -40,14 +40,9 @@ void checkMoment(S moment) {
 
 /// What a force does to a thing of that inverse mass, kept where sums with gravity cannot overflow.
 template <Scalar S>
-S acceleration(S force, const Scaled<S>& inverse) {
+S answer(S force, const Scaled<S>& inverse) {
   if (force == S(0)) return S(0);
   return toScalarWithin(toScaled(force) * inverse, S(1 << 30));
-}
-
-template <Scalar S>
-Vector<S> held(const Vector<S>& v, S limit) {
-  return {clamp(v.x, -limit, limit), clamp(v.y, -limit, limit)};
 }
 
 }  // namespace
@@ -233,16 +228,29 @@ Vector<S> Body<S>::velocityAt(const Vector<S>& worldPoint) const {
 }
 
 template <Scalar S>
-void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
+typename Body<S>::Motion Body<S>::pushed(const Vector<S>& impulse, const Vector<S>& worldPoint) const {
   require<Fault::IllegalBody>(within(impulse, kMaxForce<S>) && within(worldPoint, kMaxWorldExtent<S>),
                               "Body's impulse is invalid.");
-  if (!isDynamic()) return;
+  if (!isDynamic()) return {};
   const Vector<S> arm = worldPoint - center_;
   const Scaled<S> turning = toScaled(arm.x) * toScaled(impulse.y) - toScaled(arm.y) * toScaled(impulse.x);
   const S spin = toScalarWithin(turning * inverseMoment_, kMaxAngle<S>);
-  const Vector<S> change(acceleration(impulse.x, inverseMass_), acceleration(impulse.y, inverseMass_));
+  const Vector<S> change(answer(impulse.x, inverseMass_), answer(impulse.y, inverseMass_));
+  return {change, spin};
+}
 
-  holdVelocity({velocity_ + change, angularVelocity_ + spin});
+template <Scalar S>
+void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
+  const Motion change = pushed(impulse, worldPoint);
+  if (isDynamic()) holdVelocity({velocity_ + change.velocity, angularVelocity_ + change.angularVelocity});
+}
+
+template <Scalar S>
+void Body<S>::applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
+  const Motion change = pushed(impulse, worldPoint);
+  velocityBias_ = heldWithin(velocityBias_ + change.velocity, kMaxSpeed<S>);
+  angularVelocityBias_ =
+      clamp(angularVelocityBias_ + change.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
 }
 
 template <Scalar S>
@@ -274,17 +282,21 @@ const char* Body<S>::cannotStep() const {
 }
 
 template <Scalar S>
+typename Body<S>::Motion Body<S>::acceleration(const Vector<S>& gravity) const {
+  return {gravity + Vector<S>(answer(force_.x, inverseMass_), answer(force_.y, inverseMass_)),
+          rotates() ? answer(torque_, inverseMoment_) : S(0)};
+}
+
+template <Scalar S>
 typename Body<S>::Motion Body<S>::accelerated(const Vector<S>& gravity, S damping, S dt) const {
-  const Vector<S> pull =
-      gravity + Vector<S>(acceleration(force_.x, inverseMass_), acceleration(force_.y, inverseMass_));
-  const S spin = rotates() ? acceleration(torque_, inverseMoment_) : S(0);
-  return {{dot(velocity_.x, damping, pull.x, dt), dot(velocity_.y, damping, pull.y, dt)},
-          dot(angularVelocity_, damping, spin, dt)};
+  const Motion pull = acceleration(gravity);
+  return {{dot(velocity_.x, damping, pull.velocity.x, dt), dot(velocity_.y, damping, pull.velocity.y, dt)},
+          dot(angularVelocity_, damping, pull.angularVelocity, dt)};
 }
 
 template <Scalar S>
 std::uint8_t Body<S>::holdVelocity(const Motion& motion) {
-  velocity_ = held(motion.velocity, kMaxSpeed<S>);
+  velocity_ = heldWithin(motion.velocity, kMaxSpeed<S>);
   angularVelocity_ = clamp(motion.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
   return static_cast<std::uint8_t>((velocity_ == motion.velocity ? kHeldNothing : kHeldSpeed) |
                                    (angularVelocity_ == motion.angularVelocity ? kHeldNothing : kHeldSpin));
@@ -292,28 +304,34 @@ std::uint8_t Body<S>::holdVelocity(const Motion& motion) {
 
 template <Scalar S>
 std::uint8_t Body<S>::holdPosition(S dt, S extent) {
-  const Vector<S> moved = mulAdd(velocity_ + velocityBias_, dt, center_);
-  const S turned = mulAdd(angularVelocity_ + angularVelocityBias_, dt, angle_);
+  const Vector<S> by = (velocity_ + velocityBias_) * dt;
+  const S angle = (angularVelocity_ + angularVelocityBias_) * dt;
   // The bias only pushes overlapping shapes apart. Kept past this step, it would become momentum that no
   // impulse ever put in.
   velocityBias_ = {};
   angularVelocityBias_ = S(0);
+  return holdMoved(by, angle, extent);
+}
 
+template <Scalar S>
+std::uint8_t Body<S>::holdMoved(const Vector<S>& by, S angle, S extent) {
+  const Vector<S> moved = center_ + by;
+  const S turned = angle_ + angle;
   std::uint8_t what = kHeldNothing;
-  center_ = held(moved, extent);
+  center_ = heldWithin(moved, extent);
   if (!(center_ == moved)) {
     what |= kHeldAtBorder;
     if (center_.x != moved.x) velocity_.x = S(0);
     if (center_.y != moved.y) velocity_.y = S(0);
   }
-  const S angle = clamp(turned, -kMaxAngle<S>, kMaxAngle<S>);
-  if (angle != turned) {
+  const S heldAngle = clamp(turned, -kMaxAngle<S>, kMaxAngle<S>);
+  if (heldAngle != turned) {
     what |= kHeldSpin;
     angularVelocity_ = S(0);
   }
-  if (angle != angle_) {
-    angle_ = angle;
-    const SinCos<S> turn = sincos(angle);
+  if (heldAngle != angle_) {
+    angle_ = heldAngle;
+    const SinCos<S> turn = sincos(angle_);
     rotation_ = {turn.cos, turn.sin};
   }
   return what;

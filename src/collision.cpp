@@ -12,9 +12,9 @@ namespace samestep {
 namespace {
 
 template <Scalar S>
-void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info) {
+void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, CollisionInfo<S>& info) {
   const Vector<S> delta = b.center.v0 - a.center.v0;
-  const S reach = a.radius + b.radius;
+  const S reach = a.radius + b.radius + margin;
   if (exactDot(delta, delta) >= exactProduct(reach, reach)) return;
   info.normal = delta == Vector<S>() ? Vector<S>(S(1), S(0)) : normalize(delta);
   info.push(a.center.v0 + info.normal * a.radius, b.center.v0 - info.normal * b.radius, 0);
@@ -36,10 +36,9 @@ bool endMayTouch(const PlacedShape<S>& shape, int vertex, const Vector<S>& away)
 
 template <Scalar S>
 void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, const NearestEdge<S>& nearest,
-                    CollisionInfo<S>& info) {
+                    S reach, CollisionInfo<S>& info) {
   const Vector<S> corner = other.planes[nearest.vertex].v0;
   const Vector<S> delta = corner - circle.center.v0;
-  const S reach = circle.radius + other.radius;
   const Wide<S> apart = exactDot(delta, delta), limit = exactProduct(reach, reach);
   // As in Chipmunk, a segment that is only just met is not touched, a polygon is.
   if (apart > limit || (apart == limit && other.type == ShapeType::segment)) return;
@@ -53,28 +52,38 @@ void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, c
 
 /// A circle and a segment or polygon. One look at the edges finds what GJK and EPA would.
 template <Scalar S>
-void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, CollisionInfo<S>& info) {
+void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, S margin,
+                   CollisionInfo<S>& info) {
   const Vector<S> c = circle.center.v0;
   const NearestEdge<S> nearest = nearestEdge(other, c);
-  const S reach = circle.radius + other.radius;
+  const S reach = circle.radius + other.radius + margin;
   if (nearest.distance > reach) return;
-  if (nearest.vertex >= 0) return circleToCorner(circle, other, nearest, info);
+  if (nearest.vertex >= 0) return circleToCorner(circle, other, nearest, reach, info);
   if (nearest.distance == reach && other.type == ShapeType::segment) return;
   const Vector<S> n = -other.planes[nearest.edge].n;
   info.normal = n;
   info.push(c + n * circle.radius, c + n * (nearest.distance - other.radius), 0);
 }
 
-/// What two shapes with edges touch in, if they are near enough and the ends of segments allow it.
+/// Whether the ends of segments allow shapes with edges to touch there.
 template <Scalar S>
-void touch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest,
-           CollisionInfo<S>& info) {
-  info.id = closest.id;
-  if (closest.distance > a.radius + b.radius) return;
-  if (!endMayTouch(a, closest.vertexA, closest.normal)) return;
-  if (!endMayTouch(b, closest.vertexB, -closest.normal)) return;
-  const Vector<S> n = closest.normal;
-  clip(supportEdge(SupportShape<S>(a), n), a.radius, supportEdge(SupportShape<S>(b), -n), b.radius, n, info);
+bool endsMayTouch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest) {
+  return endMayTouch(a, closest.vertexA, closest.normal) && endMayTouch(b, closest.vertexB, -closest.normal);
+}
+
+/// Two shapes of which a face is nearest to a vertex.
+template <Scalar S>
+void touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis,
+               S margin, CollisionInfo<S>& info) {
+  const PlacedShape<S>&reference = axis.onB ? b : a, &other = axis.onB ? a : b;
+  const Vector<S> outward = reference.planes[axis.face].n;
+  if (!endMayTouch(other, axis.vertex, -outward)) return;
+  const SupportEdge<S> face = edgeTo(reference, axis.face), edge = edgeAt(other, axis.vertex, -outward);
+  if (axis.onB) {
+    clip(edge, a.radius, face, b.radius, -outward, margin, info);
+  } else {
+    clip(face, a.radius, edge, b.radius, outward, margin, info);
+  }
 }
 
 template <Scalar S>
@@ -86,29 +95,35 @@ ClosestPoints<S> closestPoints(const PlacedShape<S>& a, const PlacedShape<S>& b,
   return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);
 }
 
+/// Two shapes with edges, by the search for their nearest features.
+template <Scalar S>
+void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start, S margin,
+                  CollisionInfo<S>& info, CollisionStats* stats) {
+  const ClosestPoints<S> closest = closestPoints(a, b, start, stats);
+  info.id = closest.id;
+  if (closest.distance > a.radius + b.radius + margin || !endsMayTouch(a, b, closest)) return;
+  const Vector<S> n = closest.normal;
+  clip(edgeAt(a, SupportShape<S>(a).farthest(n), n), a.radius, edgeAt(b, SupportShape<S>(b).farthest(-n), -n),
+       b.radius, n, margin, info);
+}
+
 /// Up to here, looking at every vertex for every face is faster than searching.
 constexpr int kMaxFacePairs = 64;
 
 /// Segments and polygons, but for two segments, which have no face towards each other's ends.
 template <Scalar S>
-void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
+void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, CollisionInfo<S>& info,
                  CollisionStats* stats) {
   const CollisionId start = info.id;
   if (a.count * b.count <= kMaxFacePairs) {
-    const S reach = a.radius + b.radius;
+    const S reach = a.radius + b.radius + margin;
     const FaceAxis<S> axis = bestFace(a, b, reach, start);
     info.id = axis.id();
     if (axis.separation > reach) return;
-    if (axis.separation <= S(0) || facesVertex(a, b, axis)) {
-      const Vector<S> normal = axis.onB ? -b.planes[axis.face].n : a.planes[axis.face].n;
-      touch(a, b,
-            {normal, axis.separation, axis.id(), axis.onB ? axis.vertex : -1, axis.onB ? -1 : axis.vertex},
-            info);
-      return;
-    }
+    if (axis.separation <= S(0) || facesVertex(a, b, axis)) return touchFace(a, b, axis, margin, info);
     // Rounded corners near each other.
   }
-  touch(a, b, closestPoints(a, b, start, stats), info);
+  touchNearest(a, b, start, margin, info, stats);
 }
 
 /// The same contact with the shapes exchanged.
@@ -125,28 +140,28 @@ void exchange(CollisionInfo<S>& info) {
 
 template <Scalar S>
 void collideSorted(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
-                   CollisionStats* stats) {
+                   CollisionStats* stats, S margin) {
   require<Fault::CollisionError>(a.type <= b.type);
   if (b.type == ShapeType::segment && a.type == ShapeType::segment) {
-    touch(a, b, closestPoints(a, b, info.id, stats), info);
+    touchNearest(a, b, info.id, margin, info, stats);
   } else if (a.type != ShapeType::circle) {
-    edgesToPoly(a, b, info, stats);
+    edgesToPoly(a, b, margin, info, stats);
   } else if (b.type == ShapeType::circle) {
-    circleToCircle(a, b, info);
+    circleToCircle(a, b, margin, info);
   } else {
-    circleToEdges(a, b, info);
+    circleToEdges(a, b, margin, info);
   }
 }
 
 template <Scalar S>
 CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
-                         CollisionStats* stats) {
+                         CollisionStats* stats, S margin) {
   CollisionInfo<S> info;
   info.id = start;
   if (a.type <= b.type) {
-    collideSorted(a, b, info, stats);
+    collideSorted(a, b, info, stats, margin);
   } else {
-    collideSorted(b, a, info, stats);
+    collideSorted(b, a, info, stats, margin);
     exchange(info);
   }
   return info;
@@ -170,26 +185,26 @@ ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, c
 
 #ifndef SAMESTEP_FIXED_ONLY
 template CollisionInfo<double> collide<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                               CollisionId, CollisionStats*);
+                                               CollisionId, CollisionStats*, double);
 template ContactPointSet<double> shapesCollide<double>(const Shape<double>&, const Transform<double>&,
                                                        const Shape<double>&, const Transform<double>&);
 template void collideSorted<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                    CollisionInfo<double>&, CollisionStats*);
+                                    CollisionInfo<double>&, CollisionStats*, double);
 #endif
 template CollisionInfo<Fixed> collide<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
-                                             CollisionId, CollisionStats*);
+                                             CollisionId, CollisionStats*, Fixed);
 template ContactPointSet<Fixed> shapesCollide<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&,
                                                      const Shape<Fixed>&, const Transform<Fixed>&);
 template void collideSorted<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
-                                   CollisionInfo<Fixed>&, CollisionStats*);
+                                   CollisionInfo<Fixed>&, CollisionStats*, Fixed);
 template CollisionInfo<CheckedFixed> collide<CheckedFixed>(const PlacedShape<CheckedFixed>&,
                                                            const PlacedShape<CheckedFixed>&, CollisionId,
-                                                           CollisionStats*);
+                                                           CollisionStats*, CheckedFixed);
 template ContactPointSet<CheckedFixed> shapesCollide<CheckedFixed>(const Shape<CheckedFixed>&,
                                                                    const Transform<CheckedFixed>&,
                                                                    const Shape<CheckedFixed>&,
                                                                    const Transform<CheckedFixed>&);
 template void collideSorted<CheckedFixed>(const PlacedShape<CheckedFixed>&, const PlacedShape<CheckedFixed>&,
-                                          CollisionInfo<CheckedFixed>&, CollisionStats*);
+                                          CollisionInfo<CheckedFixed>&, CollisionStats*, CheckedFixed);
 
 }  // namespace samestep

@@ -9,6 +9,6 @@ namespace samestep {
 /// @throws CollisionError (an internal error) in any other order
 template <Scalar S>
 void collideSorted(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
-                   CollisionStats* stats);
+                   CollisionStats* stats, S margin = S(0));
 
 }  // namespace samestep

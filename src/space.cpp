@@ -69,45 +69,117 @@ void Space<S>::requireUnlocked() const {
 
 // Settings.
 
+namespace {
+
+/// Refuses settings that any setter would refuse.
+template <Scalar S>
+void check(const Settings<S>& s) {
+  require<Fault::InvalidIter>(s.iterations >= 1 && s.iterations <= 1000);
+  require<Fault::InvalidIter>(s.substeps >= 1 && s.substeps <= 100, "Substeps must be from 1 to 100.");
+  require<Fault::ValueOutOfRange>(s.solver <= SolverKind::softStep);
+  require<Fault::ValueOutOfRange>(within(s.gravity, kMaxAcceleration<S>));
+  requireIn(s.damping, S(0), S(1));
+  requireIn(s.collisionSlop, S(0), S(256));
+  requireIn(s.collisionBias, S(0), S(1));
+  requireIn(s.contactHertz, S(0), S(1000));
+  requireIn(s.contactDamping, S(0), S(100));
+  requireIn(s.contactPushSpeed, S(0), S(1 << 10));
+  requireIn(s.contactMargin, S(0), S(1));
+  requireIn(s.bounceThreshold, S(0), S(1 << 10));
+  require<Fault::ValueOutOfRange>(s.worldExtent > S(0) && s.worldExtent <= kMaxWorldExtent<S>);
+}
+
+}  // namespace
+
+template <Scalar S>
+void Space<S>::setSettings(const Settings<S>& settings) {
+  check(settings);
+  state_.settings = settings;
+}
+
 template <Scalar S>
 void Space<S>::setIterations(int iterations) {
-  require<Fault::InvalidIter>(iterations >= 1 && iterations <= 1000);
-  state_.settings.iterations = iterations;
+  Settings<S> next = state_.settings;
+  next.iterations = iterations;
+  setSettings(next);
+}
+
+template <Scalar S>
+void Space<S>::setSubsteps(int substeps) {
+  Settings<S> next = state_.settings;
+  next.substeps = substeps;
+  setSettings(next);
 }
 
 template <Scalar S>
 void Space<S>::setGravity(const Vector<S>& gravity) {
-  require<Fault::ValueOutOfRange>(within(gravity, kMaxAcceleration<S>));
-  state_.settings.gravity = gravity;
+  Settings<S> next = state_.settings;
+  next.gravity = gravity;
+  setSettings(next);
 }
 
 template <Scalar S>
 void Space<S>::setDamping(S damping) {
-  requireIn(damping, S(0), S(1));
-  state_.settings.damping = damping;
+  Settings<S> next = state_.settings;
+  next.damping = damping;
+  setSettings(next);
 }
 
 template <Scalar S>
 void Space<S>::setCollisionSlop(S slop) {
-  requireIn(slop, S(0), S(256));
-  state_.settings.collisionSlop = slop;
+  Settings<S> next = state_.settings;
+  next.collisionSlop = slop;
+  setSettings(next);
 }
 
 template <Scalar S>
 void Space<S>::setCollisionBias(S bias) {
-  requireIn(bias, S(0), S(1));
-  state_.settings.collisionBias = bias;
+  Settings<S> next = state_.settings;
+  next.collisionBias = bias;
+  setSettings(next);
 }
 
 template <Scalar S>
 void Space<S>::setCollisionPersistence(std::uint32_t steps) {
-  state_.settings.collisionPersistence = steps;
+  Settings<S> next = state_.settings;
+  next.collisionPersistence = steps;
+  setSettings(next);
 }
 
 template <Scalar S>
 void Space<S>::setWorldExtent(S extent) {
-  require<Fault::ValueOutOfRange>(extent > S(0) && extent <= kMaxWorldExtent<S>);
-  state_.settings.worldExtent = extent;
+  Settings<S> next = state_.settings;
+  next.worldExtent = extent;
+  setSettings(next);
+}
+
+template <Scalar S>
+void Space<S>::setContactSoftness(S hertz, S damping) {
+  Settings<S> next = state_.settings;
+  next.contactHertz = hertz;
+  next.contactDamping = damping;
+  setSettings(next);
+}
+
+template <Scalar S>
+void Space<S>::setContactPushSpeed(S speed) {
+  Settings<S> next = state_.settings;
+  next.contactPushSpeed = speed;
+  setSettings(next);
+}
+
+template <Scalar S>
+void Space<S>::setContactMargin(S margin) {
+  Settings<S> next = state_.settings;
+  next.contactMargin = margin;
+  setSettings(next);
+}
+
+template <Scalar S>
+void Space<S>::setBounceThreshold(S speed) {
+  Settings<S> next = state_.settings;
+  next.bounceThreshold = speed;
+  setSettings(next);
 }
 
 // Bodies.
@@ -316,8 +388,9 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
   Shape<S> next = shape;
   next.attach(id, impl_->serial);
   next.setBody(kept.body());
+  const std::span<const Vector<S>> before = kept.vertices(), after = next.vertices();
   const bool sameGeometry = next.type() == kept.type() && next.radius() == kept.radius() &&
-                            std::ranges::equal(next.vertices(), kept.vertices());
+                            std::equal(before.begin(), before.end(), after.begin(), after.end());
   const bool sameMass = next.massInfo() == kept.massInfo();
   if (!sameGeometry || !sameMass) {
     requireUnlocked();

@@ -7,7 +7,9 @@
 #include <samestep/bb_tree.h>
 #include <samestep/space.h>
 
+#include "contact_groups.h"
 #include "sequential_impulse.h"
+#include "soft_step.h"
 
 namespace samestep {
 
@@ -78,7 +80,11 @@ struct Space<S>::Impl {
   std::vector<std::uint32_t> threadFill;
 
   // Scratch: of one step.
-  ContactSolver<S> solver;
+  ImpulseSolver<S> solver;
+  SoftSolver<S> soft;
+  ContactGroups groups;
+  std::vector<std::uint32_t> solvedPairs;
+  std::vector<std::uint32_t> groupOrder;
   std::vector<std::uint32_t> solverIndex;
   std::vector<std::uint32_t> solverBodies;
   std::vector<std::uint8_t> overlapping;
@@ -108,6 +114,14 @@ struct Space<S>::Impl {
     entries.push_back(entry);
   }
 
+  std::uint32_t solverIndexOf(std::uint32_t body) {
+    std::uint32_t& index = solverIndex[body];
+    if (index == kNone) {
+      index = static_cast<std::uint32_t>(solverBodies.size());
+      solverBodies.push_back(body);
+    }
+    return index;
+  }
   /// While it lives, queries see the shapes where the step placed them, whatever callbacks have moved: a
   /// question asked within a step must not change its result.
   class KeepPlaced {

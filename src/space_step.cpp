@@ -7,6 +7,22 @@
 
 namespace samestep {
 
+namespace {
+
+/// The largest part of an overlap that goes per second.
+template <Scalar S>
+inline constexpr S kMaxBiasRate = S(1 << 14);
+/// The largest factor by which a longer step enlarges the impulses kept from the last one.
+template <Scalar S>
+inline constexpr S kMaxStepRatio = S(1 << 10);
+
+template <Scalar S>
+S stepRatio(S dt, S before) {
+  return dt >= before * kMaxStepRatio<S> ? kMaxStepRatio<S> : dt / before;
+}
+
+}  // namespace
+
 template <Scalar S>
 void Space<S>::step(S dt) {
   requireUnlocked();
@@ -22,14 +38,25 @@ void Space<S>::step(S dt) {
     // What position functions ask about is the world before any of them moved a body.
     if (!impl_->positionFuncs.empty()) refreshTouched();
     typename Impl::KeepPlaced keep(*impl_);
-    integratePositions(dt);
-    updateShapes();
-    findPairs();
-    collidePairs();
-    expirePairs();
-    preStep(dt);
-    integrateVelocities(dt);
-    solve(before == S(0) ? S(0) : dt / before);
+    if (state_.settings.solver == SolverKind::sequentialImpulses) {
+      integratePositions(dt);
+      updateShapes();
+      findPairs();
+      collidePairs();
+      expirePairs();
+      preStep(dt);
+      integrateVelocities(dt);
+      solve(before == S(0) ? S(0) : stepRatio(dt, before));
+    } else {
+      updateShapes();
+      findPairs();
+      collidePairs();
+      expirePairs();
+      softPreStep(dt);
+      softSolve();
+      softFinish(dt);
+      updateShapes();
+    }
     postSolve();
     listRangeEvents();
     keep.end();
@@ -56,6 +83,29 @@ void Space<S>::checkStep(S dt) const {
   }
 }
 
+/// Lets a body's own function move it; whatever that did, the body is held within the world.
+template <Scalar S>
+void Space<S>::callPositionFunc(std::uint32_t index, S dt) {
+  Body<S>& body = state_.bodies.valueAt(index);
+  const auto* entry = Impl::find(impl_->positionFuncs, body.positionFunc());
+  {
+    const typename Body<S>::WithinStep within(body, impl_->held[index]);
+    entry->function(body, dt, entry->data);
+  }
+  impl_->held[index] |= body.holdPosition(S(0), worldExtent());
+}
+
+template <Scalar S>
+void Space<S>::callVelocityFunc(std::uint32_t index, S kept, S dt) {
+  Body<S>& body = state_.bodies.valueAt(index);
+  const auto* entry = Impl::find(impl_->velocityFuncs, body.velocityFunc());
+  {
+    const typename Body<S>::WithinStep within(body, impl_->held[index]);
+    entry->function(body, gravity(), kept, dt, entry->data);
+  }
+  impl_->touch(index);
+}
+
 template <Scalar S>
 void Space<S>::integratePositions(S dt) {
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
@@ -63,13 +113,7 @@ void Space<S>::integratePositions(S dt) {
     Body<S>& body = state_.bodies.valueAt(i);
     if (body.type() == BodyType::staticBody) continue;
     if (body.positionFunc() != 0) [[unlikely]] {
-      const auto* entry = Impl::find(impl_->positionFuncs, body.positionFunc());
-      {
-        const typename Body<S>::WithinStep within(body, impl_->held[i]);
-        entry->function(body, dt, entry->data);
-      }
-      // Whatever it did, the body is held within the world.
-      impl_->held[i] |= body.holdPosition(S(0), worldExtent());
+      callPositionFunc(i, dt);
     } else {
       impl_->held[i] |= body.holdPosition(dt, worldExtent());
     }
@@ -107,6 +151,12 @@ bool Space<S>::mayCollide(std::uint32_t a, std::uint32_t b) const {
   return shapeA.body() != shapeB.body() && accepts(shapeA.filter(), shapeB.filter());
 }
 
+/// How far apart two boxes may be for their shapes to be a pair, m.
+template <Scalar S>
+S Space<S>::pairMargin() const {
+  return state_.settings.solver == SolverKind::softStep ? state_.settings.contactMargin : S(0);
+}
+
 template <Scalar S>
 void Space<S>::findPairs() {
   Impl& impl = *impl_;
@@ -132,9 +182,14 @@ void Space<S>::findPairs() {
       ++old;
     }
   };
+  const S margin = pairMargin();
+  if (impl.dynamicTree.margin() != margin) {
+    impl.dynamicTree.setMargin(margin);
+    impl.staticTree.setMargin(margin);
+  }
   impl.dynamicTree.updatePairs();
   for (const auto [a, b] : impl.dynamicTree.pairs()) {
-    if (!intersects(impl.placed[a].box, impl.placed[b].box) || !mayCollide(a, b)) continue;
+    if (!intersects(inflate(impl.placed[a].box, margin), impl.placed[b].box) || !mayCollide(a, b)) continue;
     while (old < pairs.size() && std::pair(pairs[old].a.index, pairs[old].b.index) < std::pair(a, b)) {
       keepTouched(pairs[old]);
     }
@@ -165,8 +220,10 @@ void Space<S>::collidePairs() {
 
 template <Scalar S>
 void Space<S>::collidePair(Pair<S>& pair) {
-  const CollisionInfo<S> info =
-      collide(impl_->placed[pair.a.index], impl_->placed[pair.b.index], pair.collisionId, &collisionStats_);
+  const bool sensor =
+      state_.shapes.valueAt(pair.a.index).sensor() || state_.shapes.valueAt(pair.b.index).sensor();
+  const CollisionInfo<S> info = collide(impl_->placed[pair.a.index], impl_->placed[pair.b.index],
+                                        pair.collisionId, &collisionStats_, sensor ? S(0) : pairMargin());
   pair.collisionId = info.id;
   if (info.count == 0) return;
   const bool wanted = applyCollision(pair, info);
@@ -176,11 +233,13 @@ void Space<S>::collidePair(Pair<S>& pair) {
   const Scaled<S> immovable{};
   const bool moves = state_.bodies.valueAt(shapeA.body().index).inverseMass() != immovable ||
                      state_.bodies.valueAt(shapeB.body().index).inverseMass() != immovable;
-  if (wanted && moves && !shapeA.sensor() && !shapeB.sensor()) {
+  if (wanted && moves && !sensor) {
     pair.solved = 1;
   } else {
     // What is not solved must not come back as an old impulse.
-    for (Contact<S>& contact : pair.contacts) contact.normalSpeed = contact.tangentSpeed = S(0);
+    for (Contact<S>& contact : pair.contacts) {
+      contact.normalSpeed = contact.tangentSpeed = contact.normalTotal = contact.tangentTotal = S(0);
+    }
     if (pair.state != ArbiterState::ignored && pair.state != ArbiterState::firstCollision) {
       pair.state = ArbiterState::normal;
     }
@@ -266,37 +325,39 @@ void Space<S>::expirePairs() {
 namespace {
 
 template <Scalar S>
-SolverBody<S> velocitiesOf(const Body<S>& body) {
+ImpulseBody<S> velocitiesOf(const Body<S>& body) {
   return {body.velocity(), body.angularVelocity(), body.velocityBias(), body.angularVelocityBias()};
 }
 
 }  // namespace
 
+/// Calls visit(pair, solver index of A, of B, body A, body B) for each pair to be solved, in order.
 template <Scalar S>
-void Space<S>::preStep(S dt) {
+template <class Visit>
+void Space<S>::eachSolvedPair(Visit&& visit) {
   Impl& impl = *impl_;
-  const S remaining = S(1) - pow(collisionBias(), dt);
-  const S biasRate = min(remaining / dt, S(1 << 14));
-  impl.solver.rows.clear();
-  impl.solver.bodies.clear();
   impl.solverBodies.clear();
   impl.solverIndex.assign(state_.bodies.slots(), Impl::kNone);
-  const auto solverIndexOf = [&](std::uint32_t body) {
-    std::uint32_t& index = impl.solverIndex[body];
-    if (index == Impl::kNone) {
-      index = static_cast<std::uint32_t>(impl.solverBodies.size());
-      impl.solverBodies.push_back(body);
-      impl.solver.bodies.push_back(velocitiesOf(state_.bodies.valueAt(body)));
-    }
-    return index;
-  };
   for (const Pair<S>& pair : state_.pairs) {
     if (pair.solved == 0) continue;
     const std::uint32_t a = state_.shapes.valueAt(pair.a.index).body().index;
     const std::uint32_t b = state_.shapes.valueAt(pair.b.index).body().index;
-    impl.solver.preStep(pair, solverIndexOf(a), solverIndexOf(b), state_.bodies.valueAt(a),
-                        state_.bodies.valueAt(b), collisionSlop(), biasRate);
+    const std::uint32_t solverA = impl.solverIndexOf(a);
+    const std::uint32_t solverB = impl.solverIndexOf(b);
+    visit(pair, solverA, solverB, state_.bodies.valueAt(a), state_.bodies.valueAt(b));
   }
+}
+
+template <Scalar S>
+void Space<S>::preStep(S dt) {
+  Impl& impl = *impl_;
+  const S remaining = S(1) - pow(collisionBias(), dt);
+  const S biasRate = remaining > dt * kMaxBiasRate<S> ? kMaxBiasRate<S> : remaining / dt;
+  impl.solver.rows.clear();
+  impl.solver.bodies.clear();
+  eachSolvedPair(
+      [&](const Pair<S>& pair, std::uint32_t indexA, std::uint32_t indexB, const Body<S>& a,
+          const Body<S>& b) { impl.solver.preStep(pair, indexA, indexB, a, b, collisionSlop(), biasRate); });
   endStage(Stage::preStep);
 }
 
@@ -310,12 +371,7 @@ void Space<S>::integrateVelocities(S dt) {
     if (body.type() == BodyType::staticBody) {
       // Nothing moves it, and no function is asked to.
     } else if (body.velocityFunc() != 0) [[unlikely]] {
-      const auto* entry = Impl::find(impl_->velocityFuncs, body.velocityFunc());
-      {
-        const typename Body<S>::WithinStep within(body, impl_->held[i]);
-        entry->function(body, pull, kept, dt, entry->data);
-      }
-      impl_->touch(i);
+      callVelocityFunc(i, kept, dt);
     } else if (body.isDynamic()) {
       impl_->held[i] |= body.holdVelocity(body.accelerated(pull, kept, dt));
     }
@@ -328,9 +384,9 @@ void Space<S>::integrateVelocities(S dt) {
 template <Scalar S>
 void Space<S>::solve(S dtCoefficient) {
   Impl& impl = *impl_;
-  ContactSolver<S>& solver = impl.solver;
-  for (std::size_t i = 0; i < impl.solverBodies.size(); ++i) {
-    solver.bodies[i] = velocitiesOf(state_.bodies.valueAt(impl.solverBodies[i]));
+  ImpulseSolver<S>& solver = impl.solver;
+  for (const std::uint32_t index : impl.solverBodies) {
+    solver.bodies.push_back(velocitiesOf(state_.bodies.valueAt(index)));
   }
   std::size_t next = 0;
   for (const Pair<S>& pair : state_.pairs) {
@@ -345,21 +401,128 @@ void Space<S>::solve(S dtCoefficient) {
   for (Pair<S>& pair : state_.pairs) {
     if (pair.solved == 0) continue;
     for (int i = 0; i < pair.count; ++i, ++next) {
-      const ContactRow<S>& row = solver.rows[next];
-      pair.contacts[i].normalSpeed = row.normalSum * row.normalScale;
-      pair.contacts[i].tangentSpeed = row.tangentSum * row.tangentScale;
+      const ImpulseRow<S>& row = solver.rows[next];
+      Contact<S>& contact = pair.contacts[i];
+      contact.normalSpeed = contact.normalTotal = row.normalSum * row.normalScale;
+      contact.tangentSpeed = contact.tangentTotal = row.tangentSum * row.tangentScale;
     }
   }
   for (std::size_t i = 0; i < impl.solverBodies.size(); ++i) {
     const std::uint32_t index = impl.solverBodies[i];
     Body<S>& body = state_.bodies.valueAt(index);
     if (!body.isDynamic()) continue;
-    const SolverBody<S>& solved = solver.bodies[i];
+    const ImpulseBody<S>& solved = solver.bodies[i];
     impl.held[index] |= body.holdVelocity({solved.velocity, solved.angularVelocity});
-    body.velocityBias_ = solved.biasVelocity;
-    body.angularVelocityBias_ = solved.biasAngularVelocity;
+    body.velocityBias_ = heldWithin(solved.biasVelocity, kMaxSpeed<S>);
+    body.angularVelocityBias_ = clamp(solved.biasAngularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
   }
   endStage(Stage::solve);
+}
+
+template <Scalar S>
+void Space<S>::softPreStep(S dt) {
+  Impl& impl = *impl_;
+  SoftSolver<S>& soft = impl.soft;
+  const Settings<S>& settings = state_.settings;
+  soft.rows.clear();
+  impl.groups.clear(state_.bodies.slots());
+  impl.solvedPairs.clear();
+  const auto bodyIndex = [&](ShapeId id) { return state_.shapes.valueAt(id.index).body().index; };
+  const auto round = [&](ShapeId id) { return state_.shapes.valueAt(id.index).type() == ShapeType::circle; };
+  for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
+    const Pair<S>& pair = state_.pairs[i];
+    if (pair.solved == 0) continue;
+    const std::uint32_t a = bodyIndex(pair.a);
+    const std::uint32_t b = bodyIndex(pair.b);
+    impl.solvedPairs.push_back(i);
+    impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic());
+  }
+  impl.groups.sort(impl.groupOrder);
+  impl.solverBodies.clear();
+  impl.solverIndex.assign(state_.bodies.slots(), Impl::kNone);
+  // By rising slot: what is added together is near in memory.
+  for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
+    if (state_.bodies.aliveAt(i)) impl.solverIndexOf(i);
+  }
+  for (const std::uint32_t ordinal : impl.groupOrder) {
+    const std::uint32_t index = impl.solvedPairs[ordinal];
+    const Pair<S>& pair = state_.pairs[index];
+    const std::uint32_t a = bodyIndex(pair.a);
+    const std::uint32_t b = bodyIndex(pair.b);
+    soft.preStep(pair, index, impl.solverIndex[a], impl.solverIndex[b], state_.bodies.valueAt(a),
+                 state_.bodies.valueAt(b), round(pair.a), round(pair.b), settings.bounceThreshold);
+  }
+
+  soft.substep = dt / S(settings.substeps);
+  soft.perSubstep = min(reciprocal(soft.substep), S(1 << 14));
+  soft.pushSpeed = settings.contactPushSpeed;
+  soft.kept = damping() == S(1) ? S(1) : pow(damping(), soft.substep);
+  const S hertz = min(settings.contactHertz, soft.perSubstep * ratio<S>(1, 4));
+  soft.softness[0] = makeSoftness(hertz, settings.contactDamping, soft.substep);
+  soft.softness[1] = makeSoftness(S(2) * hertz, settings.contactDamping, soft.substep);
+
+  soft.bodies.clear();
+  soft.drives.clear();
+  for (const std::uint32_t index : impl.solverBodies) {
+    Body<S>& body = state_.bodies.valueAt(index);
+    SoftDrive<S> drive;
+    if (body.type() == BodyType::staticBody) {
+      // Nothing moves it, and no function is asked to.
+    } else if (body.velocityFunc() != 0) [[unlikely]] {
+      callVelocityFunc(index, damping() == S(1) ? S(1) : pow(damping(), dt), dt);
+    } else if (body.isDynamic()) {
+      const typename Body<S>::Motion motion = body.acceleration(gravity());
+      drive.velocity = motion.velocity * soft.substep;
+      drive.angularVelocity = motion.angularVelocity * soft.substep;
+    }
+    soft.bodies.push_back({body.velocity_, body.angularVelocity_, {}, S(0), S(0)});
+    soft.drives.push_back(drive);
+    body.force_ = {};
+    body.torque_ = S(0);
+  }
+  endStage(Stage::preStep);
+}
+
+template <Scalar S>
+void Space<S>::softSolve() {
+  Impl& impl = *impl_;
+  SoftSolver<S>& soft = impl.soft;
+  for (int i = 0; i < state_.settings.substeps; ++i) {
+    soft.integrateVelocities();
+    soft.warmStart();
+    soft.solve();
+    soft.integratePositions();
+    soft.relax();
+    soft.sum();
+  }
+  soft.bounce();
+
+  for (const SoftRow<S>& row : soft.rows) {
+    Contact<S>& contact = state_.pairs[row.pair].contacts[row.contact];
+    contact.normalSpeed = row.normalSum * row.normalScale;
+    contact.tangentSpeed = row.tangentSum * row.tangentScale;
+    contact.normalTotal = min(row.normalTotal, kMaxSum<S>) * row.normalScale;
+    contact.tangentTotal = clamp(row.tangentTotal, -kMaxSum<S>, kMaxSum<S>) * row.tangentScale;
+  }
+  endStage(Stage::solve);
+}
+
+template <Scalar S>
+void Space<S>::softFinish(S dt) {
+  Impl& impl = *impl_;
+  for (std::size_t i = 0; i < impl.solverBodies.size(); ++i) {
+    const std::uint32_t index = impl.solverBodies[i];
+    Body<S>& body = state_.bodies.valueAt(index);
+    if (body.type() == BodyType::staticBody) continue;
+    const SoftBody<S>& solved = impl.soft.bodies[i];
+    if (body.isDynamic()) impl.held[index] |= body.holdVelocity({solved.velocity, solved.angularVelocity});
+    if (body.positionFunc() != 0) [[unlikely]] {
+      callPositionFunc(index, dt);
+    } else {
+      impl.held[index] |= body.holdMoved(solved.moved, solved.turned, worldExtent());
+    }
+  }
+  endStage(Stage::integratePositions);
 }
 
 template <Scalar S>

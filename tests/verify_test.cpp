@@ -95,10 +95,10 @@ TYPED_TEST(VerifyTest, WorldsLargerThanAllowedAreRefused) {
   options.limits.bodies = 3;
 
   EXPECT_THROW(verify<TypeParam>(bytes, testWiring<TypeParam>(), options), FormatError);
-  // The match begins with five bodies and spawns a sixth.
-  options.limits.bodies = 5;
+  // The match begins with four bodies and spawns a fifth.
+  options.limits.bodies = 4;
   EXPECT_THROW(verify<TypeParam>(bytes, testWiring<TypeParam>(), options), FormatError);
-  options.limits.bodies = 6;
+  options.limits.bodies = 5;
   EXPECT_TRUE(verify<TypeParam>(bytes, testWiring<TypeParam>(), options).matches);
 }
 

@@ -29,6 +29,9 @@ struct Contact {
   /// the lighter body, m/s: at full precision whatever the masses are.
   S normalSpeed{};
   S tangentSpeed{};
+  /// The whole impulses of the last step in the same measure: with substeps the sums over all of them.
+  S normalTotal{};
+  S tangentTotal{};
   /// Which features touch: tells which point of the last step this one continues.
   std::uint32_t feature = 0;
   std::uint32_t unused = 0;
@@ -39,6 +42,8 @@ struct Contact {
     visit("pointB", self.pointB);
     visit("normalSpeed", self.normalSpeed);
     visit("tangentSpeed", self.tangentSpeed);
+    visit("normalTotal", self.normalTotal);
+    visit("tangentTotal", self.tangentTotal);
     visit("feature", self.feature);
   }
 };
@@ -159,8 +164,10 @@ class Arbiter {
 
   /// The impulse of the last step on B, friction included, N s, saturated. MIS: arbiterTotalImpulse
   Vector<S> totalImpulse() const;
-  /// What the impulses of the last step took from the bodies' kinetic energy, J, saturated. MIS:
-  /// arbiterTotalKE
+  /// As in Chipmunk, the sum over the points of jn^2 / nMass (1 - e) / (1 + e) + jt^2 / tMass: twice what an
+  /// impact takes from the kinetic energy, J, saturated; 0 where nothing was solved.
+  /// @throws UnsolvableCollision if nothing moves either body any more
+  /// MIS: arbiterTotalKE
   S totalKE() const;
 
   /// The state behind it.

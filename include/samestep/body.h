@@ -163,6 +163,9 @@ class Body {
   /// nothing to a body that is not dynamic.
   /// @throws IllegalBody for an impulse that is not finite
   void applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint);
+  /// The same for the bias velocities.
+  /// @throws IllegalBody for an impulse that is not finite
+  void applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint);
   /// A force in N at a world point is added to force and torque.
   /// @throws IllegalBody where the sum is out of range
   void applyForce(const Vector<S>& force, const Vector<S>& worldPoint);
@@ -212,18 +215,23 @@ class Body {
   }
   /// Computes what follows from the fields.
   void derive();
-  /// Whether the record could have been made by the functions of this library: for bytes from outside.
+  /// Whether the record could have been made by the functions of this library: for what was read from
+  /// outside.
   bool wellFormed() const;
 
  private:
   friend class Space<S>;
 
-  /// The velocities after gravity, force and torque, unchecked.
   struct Motion {
     Vector<S> velocity;
     S angularVelocity;
   };
+  /// What an impulse at a world point adds to the velocities; nothing where the body is not dynamic.
+  Motion pushed(const Vector<S>& impulse, const Vector<S>& worldPoint) const;
+  /// The velocities after gravity, force and torque, unchecked.
   Motion accelerated(const Vector<S>& gravity, S damping, S dt) const;
+  /// What gravity, force and torque do to the velocities, per second.
+  Motion acceleration(const Vector<S>& gravity) const;
   /// Why the body cannot be stepped, or nullptr.
   const char* cannotStep() const;
   /// Takes the velocities, held at the limits; says what was held.
@@ -249,6 +257,7 @@ class Body {
   };
   /// Moves, held within `extent` metres of the origin; says what was held.
   std::uint8_t holdPosition(S dt, S extent);
+  std::uint8_t holdMoved(const Vector<S>& by, S angle, S extent);
 
   // State.
   Vector<S> center_{};

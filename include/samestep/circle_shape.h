@@ -7,7 +7,7 @@ namespace samestep {
 
 /// A circle of `radius` around `offset` in the body's frame, metres; without mass.
 /// @throws ValueOutOfRange (not finite), NegativeRadius, SizeOutOfRange (extent over kMaxExtent)
-/// MIS: circleShapeNew
+/// MIS: circleShapeNew, circleShapeInit
 template <Scalar S>
 Shape<S> circleShape(BodyId body, S radius, const Vector<S>& offset = Vector<S>());
 

@@ -7,6 +7,9 @@
 
 namespace samestep {
 
+template <Scalar S>
+class Body;
+
 /// Iterations after which the search for the nearest features gives up with the best found so far, and from
 /// which it is remarked on. MIS section 13.
 inline constexpr int kMaxGjkIterations = 30;
@@ -62,10 +65,11 @@ struct CollisionInfo {
 ///
 /// @param start  the id of the last answer for this pair in this order, or 0; any value is safe
 /// @param stats  if not null, remarks are counted there
+/// @param margin  m, >= 0: shapes this far apart also give their nearest points, with a positive distance
 /// MIS: collide
 template <Scalar S>
 CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start = 0,
-                         CollisionStats* stats = nullptr);
+                         CollisionStats* stats = nullptr, S margin = S(0));
 
 /// One point of a ContactPointSet.
 template <Scalar S>
@@ -89,22 +93,123 @@ template <Scalar S>
 ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, const Shape<S>& b,
                                  const Transform<S>& poseB);
 
+/// The velocity of B's material at a place relative to A's there, m/s; the arms lead from the centres of mass
+/// to that place, in world axes. MIS: relative_velocity
+template <Scalar S>
+Vector<S> relativeVelocity(const Body<S>& a, const Body<S>& b, const Vector<S>& armA, const Vector<S>& armB);
+/// Its component along a unit vector. MIS: normal_relative_velocity
+template <Scalar S>
+S normalRelativeVelocity(const Body<S>& a, const Body<S>& b, const Vector<S>& armA, const Vector<S>& armB,
+                         const Vector<S>& normal);
+
+/// An impulse in N s at the end of an arm; see Body::applyImpulse.
+/// @throws IllegalBody for an impulse that is not finite
+/// MIS: apply_impulse
+template <Scalar S>
+void applyImpulse(Body<S>& body, const Vector<S>& impulse, const Vector<S>& arm);
+/// The impulse on B and its reaction on A.
+/// @throws IllegalBody, as applyImpulse
+/// MIS: apply_impulses
+template <Scalar S>
+void applyImpulses(Body<S>& a, Body<S>& b, const Vector<S>& armA, const Vector<S>& armB,
+                   const Vector<S>& impulse);
+/// The same for the velocities that only push overlapping shapes apart.
+/// @throws IllegalBody, as applyImpulse
+/// MIS: apply_bias_impulse
+template <Scalar S>
+void applyBiasImpulse(Body<S>& body, const Vector<S>& impulse, const Vector<S>& arm);
+/// @throws IllegalBody, as applyImpulse
+/// MIS: apply_bias_impulses
+template <Scalar S>
+void applyBiasImpulses(Body<S>& a, Body<S>& b, const Vector<S>& armA, const Vector<S>& armB,
+                       const Vector<S>& impulse);
+
+/// How fast, in m/s, an impulse of 1 N s along a unit vector moves the end of an arm along it, 1/kg.
+/// MIS: k_scalar_body
+template <Scalar S>
+Scaled<S> inverseMassAlong(const Body<S>& body, const Vector<S>& arm, const Vector<S>& axis);
+/// The sum for two bodies. The solver has its own form, relative to the lighter body.
+/// @throws UnsolvableCollision where neither can be moved
+/// MIS: k_scalar
+template <Scalar S>
+Scaled<S> inverseMassAlong(const Body<S>& a, const Body<S>& b, const Vector<S>& armA, const Vector<S>& armB,
+                           const Vector<S>& axis);
+
 #ifndef SAMESTEP_FIXED_ONLY
 extern template CollisionInfo<double> collide<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                                      CollisionId, CollisionStats*);
+                                                      CollisionId, CollisionStats*, double);
 extern template ContactPointSet<double> shapesCollide<double>(const Shape<double>&, const Transform<double>&,
                                                               const Shape<double>&, const Transform<double>&);
+extern template Vector<double> relativeVelocity<double>(const Body<double>&, const Body<double>&,
+                                                        const Vector<double>&, const Vector<double>&);
+extern template double normalRelativeVelocity<double>(const Body<double>&, const Body<double>&,
+                                                      const Vector<double>&, const Vector<double>&,
+                                                      const Vector<double>&);
+extern template void applyImpulse<double>(Body<double>&, const Vector<double>&, const Vector<double>&);
+extern template void applyImpulses<double>(Body<double>&, Body<double>&, const Vector<double>&,
+                                           const Vector<double>&, const Vector<double>&);
+extern template void applyBiasImpulse<double>(Body<double>&, const Vector<double>&, const Vector<double>&);
+extern template void applyBiasImpulses<double>(Body<double>&, Body<double>&, const Vector<double>&,
+                                               const Vector<double>&, const Vector<double>&);
+extern template Scaled<double> inverseMassAlong<double>(const Body<double>&, const Vector<double>&,
+                                                        const Vector<double>&);
+extern template Scaled<double> inverseMassAlong<double>(const Body<double>&, const Body<double>&,
+                                                        const Vector<double>&, const Vector<double>&,
+                                                        const Vector<double>&);
 #endif
 extern template CollisionInfo<Fixed> collide<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
-                                                    CollisionId, CollisionStats*);
+                                                    CollisionId, CollisionStats*, Fixed);
 extern template ContactPointSet<Fixed> shapesCollide<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&,
                                                             const Shape<Fixed>&, const Transform<Fixed>&);
 extern template CollisionInfo<CheckedFixed> collide<CheckedFixed>(const PlacedShape<CheckedFixed>&,
                                                                   const PlacedShape<CheckedFixed>&,
-                                                                  CollisionId, CollisionStats*);
+                                                                  CollisionId, CollisionStats*, CheckedFixed);
 extern template ContactPointSet<CheckedFixed> shapesCollide<CheckedFixed>(const Shape<CheckedFixed>&,
                                                                           const Transform<CheckedFixed>&,
                                                                           const Shape<CheckedFixed>&,
                                                                           const Transform<CheckedFixed>&);
+extern template Vector<Fixed> relativeVelocity<Fixed>(const Body<Fixed>&, const Body<Fixed>&,
+                                                      const Vector<Fixed>&, const Vector<Fixed>&);
+extern template Fixed normalRelativeVelocity<Fixed>(const Body<Fixed>&, const Body<Fixed>&,
+                                                    const Vector<Fixed>&, const Vector<Fixed>&,
+                                                    const Vector<Fixed>&);
+extern template void applyImpulse<Fixed>(Body<Fixed>&, const Vector<Fixed>&, const Vector<Fixed>&);
+extern template void applyImpulses<Fixed>(Body<Fixed>&, Body<Fixed>&, const Vector<Fixed>&,
+                                          const Vector<Fixed>&, const Vector<Fixed>&);
+extern template void applyBiasImpulse<Fixed>(Body<Fixed>&, const Vector<Fixed>&, const Vector<Fixed>&);
+extern template void applyBiasImpulses<Fixed>(Body<Fixed>&, Body<Fixed>&, const Vector<Fixed>&,
+                                              const Vector<Fixed>&, const Vector<Fixed>&);
+extern template Scaled<Fixed> inverseMassAlong<Fixed>(const Body<Fixed>&, const Vector<Fixed>&,
+                                                      const Vector<Fixed>&);
+extern template Scaled<Fixed> inverseMassAlong<Fixed>(const Body<Fixed>&, const Body<Fixed>&,
+                                                      const Vector<Fixed>&, const Vector<Fixed>&,
+                                                      const Vector<Fixed>&);
+extern template Vector<CheckedFixed> relativeVelocity<CheckedFixed>(const Body<CheckedFixed>&,
+                                                                    const Body<CheckedFixed>&,
+                                                                    const Vector<CheckedFixed>&,
+                                                                    const Vector<CheckedFixed>&);
+extern template CheckedFixed normalRelativeVelocity<CheckedFixed>(const Body<CheckedFixed>&,
+                                                                  const Body<CheckedFixed>&,
+                                                                  const Vector<CheckedFixed>&,
+                                                                  const Vector<CheckedFixed>&,
+                                                                  const Vector<CheckedFixed>&);
+extern template void applyImpulse<CheckedFixed>(Body<CheckedFixed>&, const Vector<CheckedFixed>&,
+                                                const Vector<CheckedFixed>&);
+extern template void applyImpulses<CheckedFixed>(Body<CheckedFixed>&, Body<CheckedFixed>&,
+                                                 const Vector<CheckedFixed>&, const Vector<CheckedFixed>&,
+                                                 const Vector<CheckedFixed>&);
+extern template void applyBiasImpulse<CheckedFixed>(Body<CheckedFixed>&, const Vector<CheckedFixed>&,
+                                                    const Vector<CheckedFixed>&);
+extern template void applyBiasImpulses<CheckedFixed>(Body<CheckedFixed>&, Body<CheckedFixed>&,
+                                                     const Vector<CheckedFixed>&, const Vector<CheckedFixed>&,
+                                                     const Vector<CheckedFixed>&);
+extern template Scaled<CheckedFixed> inverseMassAlong<CheckedFixed>(const Body<CheckedFixed>&,
+                                                                    const Vector<CheckedFixed>&,
+                                                                    const Vector<CheckedFixed>&);
+extern template Scaled<CheckedFixed> inverseMassAlong<CheckedFixed>(const Body<CheckedFixed>&,
+                                                                    const Body<CheckedFixed>&,
+                                                                    const Vector<CheckedFixed>&,
+                                                                    const Vector<CheckedFixed>&,
+                                                                    const Vector<CheckedFixed>&);
 
 }  // namespace samestep

@@ -9,7 +9,7 @@ namespace samestep {
 /// metres; without mass.
 /// @throws ValueOutOfRange (not finite), NegativeRadius, SizeOutOfRange (extent over kMaxExtent),
 ///         DegenerateShape (the hull has no area), TooManyVertices (it has more than kMaxPolyVertices)
-/// MIS: polyShapeNew
+/// MIS: polyShapeNew, polyShapeInit
 template <Scalar S>
 Shape<S> polyShape(BodyId body, std::span<const Vector<S>> points,
                    const Transform<S>& transform = Transform<S>(), S radius = S(0));
@@ -17,17 +17,17 @@ Shape<S> polyShape(BodyId body, std::span<const Vector<S>> points,
 /// The polygon with exactly these vertices, which keep their numbers.
 /// @param vertices  3 to kMaxPolyVertices, counter-clockwise, every angle less than a straight one
 /// @throws as polyShape; DegenerateShape also where the vertices are not as said
-/// MIS: polyShapeNewRaw
+/// MIS: polyShapeNewRaw, polyShapeInitRaw
 template <Scalar S>
 Shape<S> polyShapeRaw(BodyId body, std::span<const Vector<S>> vertices, S radius = S(0));
 
 /// A box around the body's origin, from its bottom right corner counter-clockwise.
 /// @param width, height  metres, > 0
 /// @throws NegativeHalfDimensions (a side is negative), DegenerateShape (a side is 0), else as polyShape
-/// MIS: boxShapeNew
+/// MIS: boxShapeNew, boxShapeInit
 template <Scalar S>
 Shape<S> boxShape(BodyId body, S width, S height, S radius = S(0));
-/// The same for a box anywhere in the body's frame. MIS: boxShapeNew2
+/// The same for a box anywhere in the body's frame. MIS: boxShapeNew2, boxShapeInit2
 template <Scalar S>
 Shape<S> boxShape(BodyId body, const BB<S>& box, S radius = S(0));
 

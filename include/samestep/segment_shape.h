@@ -9,7 +9,7 @@ namespace samestep {
 /// ends must differ, whatever the radius: a circle is what a segment without length would be.
 /// @throws ValueOutOfRange (not finite), NegativeRadius, SizeOutOfRange (extent over kMaxExtent),
 ///         DegenerateShape (a equals b)
-/// MIS: segmentShapeNew
+/// MIS: segmentShapeNew, segmentShapeInit
 template <Scalar S>
 Shape<S> segmentShape(BodyId body, const Vector<S>& a, const Vector<S>& b, S radius = S(0));
 

@@ -70,7 +70,7 @@ class PolyShape;
 template <Scalar S>
 class Shape {
  public:
-  /// A circle of radius 0 of no body: a place to assign to.
+  /// A circle of radius 0 of no body: a place to assign to. MIS: shapeInit
   constexpr Shape() = default;
 
   constexpr ShapeType type() const { return type_; }

@@ -1,4 +1,4 @@
-// Runs FOLDER/runner under WASI: node run_wasi.mjs FOLDER ARGUMENT...
+// Runs FOLDER/runner under WASI, in the present folder: node run_wasi.mjs FOLDER ARGUMENT...
 import { readFile } from 'node:fs/promises';
 import { WASI } from 'node:wasi';
 
@@ -6,7 +6,7 @@ const [folder, ...programArguments] = process.argv.slice(2);
 const wasi = new WASI({
   version: 'preview1',
   args: ['runner', ...programArguments],
-  preopens: { '/': '/' },
+  preopens: { '.': '.' },
   returnOnExit: true,
 });
 const module = await WebAssembly.compile(await readFile(`${folder}/runner`));

@@ -1,30 +1,71 @@
 // SPDX-License-Identifier: MIT
-// What scripts/platforms runs on each platform. Prints one line about the platform, then one for each tick of
-// each scene: name, scalar, tick, hash. Output goes through printf: <iostream> would be most of the program.
+// What scripts/platforms runs on each platform: runner [--recorded] [--ticks N] RECORDING...
+// Prints a line about the platform, then one for each tick of each recording: its name, the tick, the hash of
+// the world after it, computed here; with --recorded the hash that the recording carries. Output goes through
+// printf, as <iostream> would be most of the program.
 #include <bit>
 #include <cinttypes>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
+#include <vector>
 
+#include <samestep/named_handlers.h>
+#include <samestep/replay.h>
 #include <samestep/version.h>
-
-#include "scenes.h"
 
 namespace samestep {
 namespace {
 
-template <Scalar S>
-void run(const char* scalar, std::uint64_t ticks) {
-  for (int i = 0; i < kPlatformScenes; ++i) {
-    const PlatformScene<S> scene = platformScene<S>(i);
-    Space<S> space;
-    scene.build(space);
-    for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
-      scene.act(space, tick);
-      space.step(ratio<S>(1, 64));
-      std::printf("%s %s %" PRIu64 " %016" PRIx64 "\n", scene.name, scalar, tick, space.hash());
-    }
+[[noreturn]] void stop(const char* path, const char* reason) {
+  std::printf("%s: %s\n", path, reason);
+  std::exit(1);
+}
+
+std::vector<std::uint8_t> readFile(const char* path) {
+  std::FILE* file = std::fopen(path, "rb");
+  if (file == nullptr) stop(path, "cannot be opened");
+  std::vector<std::uint8_t> bytes;
+  std::uint8_t chunk[4096];
+  while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, file)) {
+    bytes.insert(bytes.end(), chunk, chunk + count);
   }
+  std::fclose(file);
+  return bytes;
+}
+
+/// The part of a path after the last slash.
+std::string_view nameOf(std::string_view path) {
+  const std::size_t slash = path.find_last_of('/');
+  return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+struct Options {
+  bool recorded = false;
+  std::uint64_t ticks = ~std::uint64_t{0};
+};
+
+template <Scalar S>
+void run(std::string_view name, const std::vector<std::uint8_t>& bytes, const Options& options) {
+  Replay<S> replay(bytes, namedHandlerWiring<S>());
+  while (replay.tick() < options.ticks && replay.step()) {
+    const std::uint64_t hash = options.recorded ? replay.recordedHash() : replay.space().hash();
+    std::printf("%.*s %" PRIu64 " %016" PRIx64 "\n", static_cast<int>(name.size()), name.data(),
+                replay.tick(), hash);
+  }
+}
+
+void runFile(const char* path, const Options& options) {
+  const std::vector<std::uint8_t> bytes = readFile(path);
+  if (recordingInfo(bytes).scalar == ScalarKind::fixed) {
+    run<Fixed>(nameOf(path), bytes, options);
+    return;
+  }
+#ifndef SAMESTEP_FIXED_ONLY
+  run<double>(nameOf(path), bytes, options);
+#else
+  stop(path, "this build has no double");
+#endif
 }
 
 void describePlatform() {
@@ -38,12 +79,18 @@ void describePlatform() {
 }  // namespace samestep
 
 int main(int argumentCount, char** arguments) {
-  const std::uint64_t ticks = argumentCount > 1 ? std::strtoull(arguments[1], nullptr, 10) : 600;
+  samestep::Options options;
   samestep::describePlatform();
-  samestep::run<samestep::Fixed>("fixed", ticks);
-#ifndef SAMESTEP_FIXED_ONLY
-  samestep::run<double>("double", ticks);
-#endif
+  for (int i = 1; i < argumentCount; ++i) {
+    const std::string_view argument = arguments[i];
+    if (argument == "--recorded") {
+      options.recorded = true;
+    } else if (argument == "--ticks" && i + 1 < argumentCount) {
+      options.ticks = std::strtoull(arguments[++i], nullptr, 10);
+    } else {
+      samestep::runFile(arguments[i], options);
+    }
+  }
   std::puts("end");
   return 0;
 }

@@ -11,7 +11,7 @@ namespace samestep {
 /// The shortest decimal that parseDecimal reads back as x, and the nearest to x of that length: "-0.1".
 /// Never an exponent, never a point without digits on both sides.
 template <FixedNumber S>
-constexpr std::string formatDecimal(S x) {
+std::string formatDecimal(S x) {
   return std::string(raw::formatDecimal(x.raw(), S::kBits).view());
 }
 
@@ -28,13 +28,16 @@ constexpr DecimalStatus parseDecimal(std::string_view text, S& out) {
   return DecimalStatus::ok;
 }
 
+/// Called by a literal that is no number: not constexpr, so that the compiler stops there.
+void aFixedLiteralMustBeADecimalNumberInTheRangeOfFixed();
+
 namespace literals {
 
 /// A Fixed from an exact decimal: 0.1_fixed. Text that is no decimal or does not fit is a compile error.
 consteval Fixed operator""_fixed(const char* text) {
   Fixed result;
   if (parseDecimal(std::string_view(text), result) != DecimalStatus::ok) {
-    throw "a _fixed literal must be a decimal number in the range of Fixed";
+    aFixedLiteralMustBeADecimalNumberInTheRangeOfFixed();
   }
   return result;
 }

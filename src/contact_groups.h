@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+namespace samestep {
+
+/// Puts pairs of bodies into groups that share no body, so that the contacts of a group do not wait for each
+/// other. Greedy in the order given: the first group that has neither body. Depends on nothing else.
+class ContactGroups {
+ public:
+  /// The last group takes what fits nowhere and may share bodies.
+  static constexpr std::uint32_t kGroups = 64;
+
+  /// Starts anew for bodies numbered below `bodies`.
+  void clear(std::uint32_t bodies) {
+    used_.assign(bodies, 0);
+    groups_.clear();
+    for (std::uint32_t& size : sizes_) size = 0;
+  }
+  /// The next pair; a body that nothing moves may be in every group.
+  void add(std::uint32_t a, bool aMoves, std::uint32_t b, bool bMoves) {
+    const std::uint64_t taken = (aMoves ? used_[a] : 0) | (bMoves ? used_[b] : 0);
+    const std::uint32_t free = static_cast<std::uint32_t>(std::countr_one(taken));
+    const std::uint32_t group = free < kGroups ? free : kGroups - 1;
+    const std::uint64_t bit = std::uint64_t{1} << group;
+    if (aMoves) used_[a] |= bit;
+    if (bMoves) used_[b] |= bit;
+    groups_.push_back(static_cast<std::uint8_t>(group));
+    ++sizes_[group];
+  }
+  /// The numbers of the pairs, counted as they were added, group after group, in order within each.
+  void sort(std::vector<std::uint32_t>& order) const {
+    std::uint32_t next[kGroups];
+    std::uint32_t start = 0;
+    for (std::uint32_t group = 0; group < kGroups; ++group) {
+      next[group] = start;
+      start += sizes_[group];
+    }
+    order.resize(groups_.size());
+    for (std::uint32_t i = 0; i < groups_.size(); ++i) order[next[groups_[i]]++] = i;
+  }
+
+ private:
+  std::vector<std::uint64_t> used_;
+  std::vector<std::uint8_t> groups_;
+  std::uint32_t sizes_[kGroups] = {};
+};
+
+}  // namespace samestep
