@@ -43,6 +43,9 @@ class CountingIterator {
   Position* position_;
 };
 
+/// No object of a scene has that many; keys are searched one by one.
+constexpr std::size_t kMaxKeys = 64;
+
 /// Builds the nodes from nlohmann's events.
 class Builder {
  public:
@@ -69,13 +72,17 @@ class Builder {
   bool end_array() { return close(); }
   bool key(std::string& name) {
     Node& object = open_.back();
+    if (object.keys.size() == kMaxKeys) throw SceneError(file_, position_.line, "", "too many keys");
     if (object.find(name) != nullptr) {
       throw SceneError(file_, position_.line, "", "the key \"" + name + "\" stands twice");
     }
     object.keys.push_back(std::move(name));
     return true;
   }
-  bool parse_error(std::size_t, const std::string& token, const nlohmann::detail::exception&) {
+  bool parse_error(std::size_t, const std::string& token, const nlohmann::detail::exception& error) {
+    constexpr int kNumberOverflow = 406;
+    if (error.id == kNumberOverflow)
+      throw SceneError(file_, position_.line, "", "too large a number: " + token);
     throw SceneError(file_, position_.line, "", "not JSON at \"" + token + "\"");
   }
 

@@ -22,7 +22,14 @@ int run(const Options& options) {
   Scene<S> scene(source);
   Progress progress("hash", ticks);
   for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
-    scene.step();
+    try {
+      scene.step();
+    } catch (const FixedOverflow& report) {
+      std::fflush(stdout);
+      std::fprintf(stderr, "samestep: %s: tick %llu: out of range in %s\n", options.scene.c_str(),
+                   static_cast<unsigned long long>(tick), report.what());
+      return kMismatch;
+    }
     if (tick % options.every == 0) {
       std::printf("%llu %s\n", static_cast<unsigned long long>(tick), hex(scene.space().hash()).c_str());
     }

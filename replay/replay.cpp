@@ -13,28 +13,13 @@ Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, 
 }
 
 template <Scalar S>
-void Replay<S>::applyOne(const Command<S>& command) {
-#if defined(__cpp_exceptions)
-  try {
-    apply(space_, command, wiring_);
-  } catch (const MissingCallback&) {
-    throw;
-  } catch (const Error& error) {
-    // Recorded commands were accepted once.
-    failFormat(reader_.offset(), error.what());
-  }
-#else
-  apply(space_, command, wiring_);
-#endif
-}
-
-template <Scalar S>
 bool Replay<S>::applyCommands() {
   if (applied_ || ended_) return !ended_;
   commands_.clear();
   RecordingItem item = reader_.next();
   for (; item == RecordingItem::command; item = reader_.next()) {
-    applyOne(reader_.command());
+    // Recorded commands were accepted once.
+    orFailFormat(reader_.offset(), [&] { apply(space_, reader_.command(), wiring_); });
     commands_.push_back(reader_.command());
     if (space_.state().bodies.slots() > limits_.bodies || space_.state().shapes.slots() > limits_.shapes) {
       failFormat(reader_.offset(), "more bodies or shapes than allowed");
@@ -49,7 +34,7 @@ template <Scalar S>
 bool Replay<S>::step() {
   if (!applyCommands()) return false;
   applied_ = false;
-  space_.step(reader_.timeStep());
+  orFailFormat(reader_.offset(), [&] { space_.step(reader_.timeStep()); });
   if (space_.state().pairs.size() > limits_.pairs) failFormat(reader_.offset(), "more pairs than allowed");
   recordedHash_ = reader_.hash();
   ++tick_;

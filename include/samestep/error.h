@@ -179,6 +179,24 @@ template <Fault F>
 #endif
 }
 
+/// Runs an action on bytes from outside: what the engine refuses is the fault of those at `offset`, but not a
+/// missing callback.
+template <class Action>
+void orFailFormat(std::uint64_t offset, Action&& action) {
+#if defined(__cpp_exceptions)
+  try {
+    action();
+  } catch (const MissingCallback&) {
+    throw;
+  } catch (const Error& error) {
+    failFormat(offset, error.what());
+  }
+#else
+  static_cast<void>(offset);
+  action();
+#endif
+}
+
 /// Called with the fault before a build without exceptions aborts. Default: none.
 using FailureHandler = void (*)(Fault, const char* text);
 void setFailureHandler(FailureHandler handler);

@@ -27,7 +27,7 @@ class Replay {
   std::uint64_t recordedHash() const { return recordedHash_; }
 
   /// Applies what was done before the next step, once; commands() then has it. False at the end.
-  /// @throws FormatError for a command that the world refuses, and where the world outgrows the limits
+  /// @throws FormatError for what the world refuses, and where it outgrows the limits
   bool applyCommands();
   /// applyCommands, unless that has been done, and the step. False at the end.
   /// @throws as applyCommands
@@ -37,8 +37,6 @@ class Replay {
   const std::vector<Command<S>>& commands() const { return commands_; }
 
  private:
-  void applyOne(const Command<S>& command);
-
   RecordingReader<S> reader_;
   Wiring<S> wiring_;
   WorldLimits limits_;

@@ -28,7 +28,7 @@ struct VerifyOptions {
 };
 
 /// Replays a recording and compares the hash of every step. A mismatch is a result, not an error.
-/// @throws FormatError, MissingCallback; IllegalBody for a world that cannot be stepped
+/// @throws FormatError, MissingCallback
 template <Scalar S>
 VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
                     const VerifyOptions& options = {});

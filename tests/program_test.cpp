@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// Drives the built program as a user does.
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace samestep {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using ::testing::Not;
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string error;
+};
+
+std::string contents(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+class ProgramTest : public ::testing::Test {
+ protected:
+  ProgramTest() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "samestep-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~ProgramTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string file(const std::string& name) const { return folder_ + "/" + name; }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(file(name), std::ios::binary) << text;
+  }
+  Outcome run(const std::string& arguments) const {
+    const std::string command = std::string("'") + SAMESTEP_PROGRAM + "' " + arguments + " >'" + file("out") +
+                                "' 2>'" + file("error") + "'";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(file("out")), contents(file("error"))};
+  }
+
+ private:
+  std::string folder_;
+};
+
+TEST_F(ProgramTest, TellsItsVersion) {
+  const Outcome outcome = run("--version");
+
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* part : {"samestep ", "simulation revision ", "scalars ", "fixed", "compiler "}) {
+    EXPECT_THAT(outcome.out, HasSubstr(part));
+  }
+}
+
+TEST_F(ProgramTest, HelpExplainsEachWordAndSucceeds) {
+  EXPECT_EQ(run("--help").code, 0);
+  for (const char* word : {"scenes", "hash", "record", "verify", "diff", "draw"}) {
+    EXPECT_THAT(run("--help").out, HasSubstr(word));
+    EXPECT_EQ(run(std::string(word) + " --help").code, 0) << word;
+  }
+}
+
+TEST_F(ProgramTest, UnusableArgumentsExitWithTwoAndSpeakOnTheErrorOutput) {
+  for (const char* arguments :
+       {"", "dance", "hash", "hash nowhere", "hash stack --scalar float", "hash stack --ticks 0",
+        "hash stack --ticks x", "hash stack --every 0", "record stack",
+        "record stack -o /no/such/folder/file", "verify", "verify /no/such/file", "diff one",
+        "draw stack -o x.svg", "draw stack --tick -1 -o x.svg"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_NE(outcome.error, "") << arguments;
+  }
+}
+
+TEST_F(ProgramTest, ScenesListsOneRunnableNamePerLine) {
+  const Outcome outcome = run("scenes");
+
+  EXPECT_EQ(outcome.code, 0);
+  std::size_t lines = 0;
+  std::size_t start = 0;
+  for (std::size_t end; (end = outcome.out.find('\n', start)) != std::string::npos; start = end + 1) {
+    const std::string line = outcome.out.substr(start, end - start);
+    const std::string name = line.substr(0, line.find(' '));
+    EXPECT_EQ(run("hash " + name + " --ticks 1").code, 0) << line;
+    ++lines;
+  }
+  EXPECT_GE(lines, 12u);
+}
+
+TEST_F(ProgramTest, HashPrintsTickAndHashOfEveryTick) {
+  const Outcome outcome = run("hash stack --ticks 3");
+
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, MatchesRegex("1 [0-9a-f]{16}\n2 [0-9a-f]{16}\n3 [0-9a-f]{16}\n"));
+  EXPECT_THAT(run("hash stack --ticks 7 --every 3").out, MatchesRegex("3 [0-9a-f]{16}\n6 [0-9a-f]{16}\n"));
+  EXPECT_EQ(run("hash stack --ticks 3 --scalar checked").out, outcome.out);
+}
+
+TEST_F(ProgramTest, RecordsVerifiesAndFindsWhatWasAltered) {
+  ASSERT_EQ(run("record bullets -o '" + file("a.rec") + "' --ticks 150").code, 0);
+
+  const Outcome good = run("verify '" + file("a.rec") + "'");
+  EXPECT_EQ(good.code, 0);
+  EXPECT_THAT(good.out, HasSubstr("all 150 ticks"));
+  EXPECT_THAT(good.out, HasSubstr("times real time at 60 Hz"));
+
+  const std::string bytes = contents(file("a.rec"));
+  write("cut.rec", bytes.substr(0, bytes.size() / 2));
+  write("longer.rec", bytes + "x");
+  std::string altered = bytes;
+  altered[bytes.size() / 2] = static_cast<char>(altered[bytes.size() / 2] ^ 4);
+  write("altered.rec", altered);
+  write("empty.rec", "");
+  for (const char* name : {"cut.rec", "longer.rec", "altered.rec", "empty.rec"}) {
+    const Outcome outcome = run("verify '" + file(name) + "'");
+    EXPECT_EQ(outcome.code, 2) << name;
+    EXPECT_THAT(outcome.error, HasSubstr(": offset ")) << name;
+  }
+  // One bad file does not hide the others.
+  const Outcome several = run("verify '" + file("cut.rec") + "' '" + file("a.rec") + "'");
+  EXPECT_EQ(several.code, 2);
+  EXPECT_THAT(several.out, HasSubstr("all 150 ticks"));
+}
+
+TEST_F(ProgramTest, DiffNamesTickObjectFieldAndInput) {
+  const std::string scene =
+      R"({"samestep": 1, "bodies": [{"name": "a", "mass": 1, "moment": 1}], "inputs": "keys.csv"})";
+  write("scene.json", scene);
+  write("keys.csv", "tick,body,do,x,y\n5,a,impulse,1,0\n");
+  ASSERT_EQ(run("record '" + file("scene.json") + "' --ticks 20 -o '" + file("a.rec") + "'").code, 0);
+  write("keys.csv", "tick,body,do,x,y\n5,a,impulse,1.5,0\n");
+  ASSERT_EQ(run("record '" + file("scene.json") + "' --ticks 20 -o '" + file("b.rec") + "'").code, 0);
+
+  const Outcome same = run("diff '" + file("a.rec") + "' '" + file("a.rec") + "'");
+  EXPECT_EQ(same.code, 0);
+  EXPECT_THAT(same.out, HasSubstr("the same for 20 ticks"));
+  const Outcome other = run("diff '" + file("a.rec") + "' '" + file("b.rec") + "'");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_THAT(other.out, HasSubstr("differ at tick 5"));
+  EXPECT_THAT(other.out, HasSubstr("body 1, velocity.x"));
+  EXPECT_THAT(other.out, HasSubstr("only B: impulse: body 1"));
+  EXPECT_EQ(run("diff '" + file("a.rec") + "' '" + file("scene.json") + "'").code, 2);
+}
+
+TEST_F(ProgramTest, DrawsScenesAndRecordings) {
+  ASSERT_EQ(run("draw stack --tick 10 -o '" + file("scene.svg") + "'").code, 0);
+  ASSERT_EQ(run("record stack --ticks 10 -o '" + file("a.rec") + "'").code, 0);
+  ASSERT_EQ(run("draw '" + file("a.rec") + "' --tick 10 -o '" + file("recording.svg") + "'").code, 0);
+
+  const std::string picture = contents(file("scene.svg"));
+  EXPECT_THAT(picture, HasSubstr("<svg "));
+  EXPECT_THAT(picture, HasSubstr("</svg>"));
+  const auto withoutCaption = [](const std::string& text) { return text.substr(0, text.find("tick 10")); };
+  EXPECT_EQ(withoutCaption(contents(file("recording.svg"))).size() > 100, true);
+  EXPECT_EQ(run("draw '" + file("a.rec") + "' --tick 11 -o '" + file("late.svg") + "'").code, 2);
+}
+
+TEST_F(ProgramTest, ScenesAreFoundInTheFolderTheEnvironmentNames) {
+  write("mine.json", R"({"samestep": 1, "about": "my own"})");
+  ASSERT_EQ(setenv("SAMESTEP_SCENES", file("").c_str(), 1), 0);
+
+  EXPECT_THAT(run("scenes").out, HasSubstr("my own"));
+  EXPECT_EQ(run("hash mine --ticks 2").code, 0);
+  unsetenv("SAMESTEP_SCENES");
+  EXPECT_THAT(run("scenes").out, Not(HasSubstr("my own")));
+}
+
+}  // namespace
+}  // namespace samestep

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/scene.h>
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <samestep/decimal.h>
+#include <samestep/draw.h>
+#include "support/scalars.h"
+
+namespace samestep {
+namespace {
+
+using ::testing::HasSubstr;
+
+template <class S>
+class SceneTest : public ::testing::Test {};
+TYPED_TEST_SUITE(SceneTest, AllScalars);
+
+template <Scalar S>
+S decimal(const char* text) {
+  S value{};
+  EXPECT_EQ(parseDecimal(std::string_view(text), value), DecimalStatus::ok);
+  return value;
+}
+
+/// What a scene is refused with; empty where it is not.
+template <Scalar S>
+std::string complaint(const std::string& text) {
+  try {
+    Scene<S> scene(SceneSource::fromText(text, "test.json"));
+    return "";
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+}
+
+/// The only body beside the static one.
+template <Scalar S>
+const Body<S>& onlyBody(const Scene<S>& scene) {
+  BodyId id;
+  scene.space().eachBody([&](const Body<S>& body) {
+    if (body.id() != scene.space().staticBody()) id = body.id();
+  });
+  return scene.space().body(id);
+}
+
+TYPED_TEST(SceneTest, NumbersAreReadExactlyFromTheirText) {
+  const Scene<TypeParam> scene(SceneSource::fromText(
+      R"({"samestep": 1, "bodies": [{"mass": 2, "moment": 1, "position": [0.1, -1234.00000000023283064365386962890625],
+          "velocity": [1e2, -3], "angularVelocity": 0.30000000000000000001}]})",
+      "test.json"));
+
+  const Body<TypeParam>& body = onlyBody(scene);
+  EXPECT_EQ(body.position().x, decimal<TypeParam>("0.1"));
+  EXPECT_EQ(body.position().y, decimal<TypeParam>("-1234.00000000023283064365386962890625"));
+  EXPECT_EQ(body.velocity(), Vector<TypeParam>(TypeParam(100), TypeParam(-3)));
+  EXPECT_EQ(body.angularVelocity(), decimal<TypeParam>("0.30000000000000000001"));
+}
+
+TYPED_TEST(SceneTest, SettingsTimeStepAndHandlersAreTaken) {
+  const Scene<TypeParam> scene(SceneSource::fromText(
+      R"({"samestep": 1, "stepsPerSecond": 64, "settings": {"gravity": [1, -2], "iterations": 7, "damping": 0.5,
+          "collisionSlop": 0.25, "collisionBias": 0.125, "collisionPersistence": 9, "worldExtent": 100},
+          "handlers": [{"types": [1, 2], "do": "ignore"}, {"type": 3, "do": "count"}, {"all": true, "do": "slippery"}]})",
+      "test.json"));
+
+  EXPECT_EQ(scene.timeStep(), TypeParam(1) / TypeParam(64));
+  const Settings<TypeParam>& settings = scene.space().settings();
+  EXPECT_EQ(settings.gravity, Vector<TypeParam>(TypeParam(1), TypeParam(-2)));
+  EXPECT_EQ(settings.iterations, 7);
+  EXPECT_EQ(settings.damping, ratio<TypeParam>(1, 2));
+  EXPECT_EQ(settings.collisionSlop, ratio<TypeParam>(1, 4));
+  EXPECT_EQ(settings.collisionBias, ratio<TypeParam>(1, 8));
+  EXPECT_EQ(settings.collisionPersistence, 9u);
+  EXPECT_EQ(settings.worldExtent, TypeParam(100));
+  EXPECT_EQ(scene.space().state().handlers.size(), 3u);
+}
+
+TYPED_TEST(SceneTest, AGridMakesCopiesWithNumberedNames) {
+  Scene<TypeParam> scene(SceneSource::fromText(
+      R"({"samestep": 1, "bodies": [{"name": "b", "mass": 1, "moment": 1, "position": [1, 2],
+          "grid": {"columns": 3, "rows": 2, "across": [10, 0], "up": [0, 5]}}],
+          "events": [{"tick": 1, "do": "velocity", "body": "b.4", "value": [60, 0]}]})",
+      "test.json"));
+  EXPECT_EQ(scene.space().bodyCount(), 7u);
+
+  scene.step();
+  scene.step();
+
+  std::vector<TypeParam> places;
+  scene.space().eachBody([&](const Body<TypeParam>& body) { places.push_back(body.position().x); });
+  EXPECT_GT(places[5], TypeParam(11));
+}
+
+TYPED_TEST(SceneTest, EventsHappenBeforeTheStepOfTheirTickInOrder) {
+  Scene<TypeParam> scene(SceneSource::fromText(
+      R"({"samestep": 1, "bodies": [{"name": "b", "mass": 1, "moment": 1}],
+          "events": [{"tick": 3, "do": "velocity", "body": "b", "value": [1, 0]},
+                     {"tick": 2, "do": "velocity", "body": "b", "value": [5, 0]},
+                     {"tick": 3, "do": "impulse", "body": "b", "value": [1, 0]},
+                     {"tick": 4, "do": "remove", "body": "b"},
+                     {"tick": 5, "do": "impulse", "body": "b", "value": [1, 0]}]})",
+      "test.json"));
+
+  scene.step();
+  EXPECT_EQ(onlyBody(scene).velocity().x, TypeParam(0));
+  scene.step();
+  EXPECT_EQ(onlyBody(scene).velocity().x, TypeParam(5));
+  scene.step();
+  EXPECT_EQ(onlyBody(scene).velocity().x, TypeParam(2));
+  scene.step();
+  EXPECT_EQ(scene.space().bodyCount(), 1u);
+  // The event for a body that is gone is left out.
+  scene.step();
+}
+
+TYPED_TEST(SceneTest, ASpawnedBodyCanBeNamedByEvents) {
+  Scene<TypeParam> scene(SceneSource::fromText(
+      R"({"samestep": 1, "events": [
+          {"tick": 2, "do": "spawn", "body": {"name": "s", "shapes": [{"circle": 1, "mass": 2}]}},
+          {"tick": 2, "do": "velocity", "body": "s", "value": [3, 0]},
+          {"tick": 9, "do": "remove", "body": "s"}]})",
+      "test.json"));
+
+  scene.step();
+  scene.step();
+
+  EXPECT_EQ(scene.space().bodyCount(), 2u);
+  EXPECT_EQ(onlyBody(scene).velocity().x, TypeParam(3));
+  while (scene.tick() < 9) scene.step();
+  EXPECT_EQ(scene.space().bodyCount(), 1u);
+}
+
+TYPED_TEST(SceneTest, AnErrorNamesFileLinePathAndReason) {
+  const std::string text =
+      "{\n  \"samestep\": 1,\n  \"bodies\": [\n    {\"mass\": 1},\n    {\"mass\": 1,\n     \"moment\": -4}\n "
+      " ]\n}\n";
+
+  const std::string said = complaint<TypeParam>(text);
+
+  EXPECT_THAT(said, HasSubstr("test.json:6: /bodies/1/moment: "));
+  EXPECT_THAT(said, HasSubstr("moment is negative"));
+}
+
+TYPED_TEST(SceneTest, ALineIsCountedRightWhereANumberEndsIt) {
+  EXPECT_THAT(complaint<TypeParam>("{\"samestep\":\n1\n,\"ticks\":\n-1\n}"),
+              HasSubstr("test.json:4: /ticks"));
+}
+
+TYPED_TEST(SceneTest, MalformedScenesAreRefusedWithTheirReason) {
+  const auto said = [](const char* inside) {
+    return complaint<TypeParam>(std::string("{\"samestep\": 1, ") + inside + "}");
+  };
+  EXPECT_THAT(complaint<TypeParam>(""), HasSubstr("not JSON"));
+  EXPECT_THAT(complaint<TypeParam>("{\"samestep\": 1"), HasSubstr("not JSON"));
+  EXPECT_THAT(complaint<TypeParam>("{}"), HasSubstr("\"samestep\" is missing"));
+  EXPECT_THAT(complaint<TypeParam>("{\"samestep\": 2}"), HasSubstr("/samestep: a whole number from 1 to 1"));
+  EXPECT_THAT(complaint<TypeParam>("[1]"), HasSubstr("an object is wanted here"));
+  EXPECT_THAT(said("\"bodys\": []"), HasSubstr("/bodys: unknown key \"bodys\""));
+  EXPECT_THAT(said("\"ticks\": 5, \"ticks\": 6"), HasSubstr("stands twice"));
+  EXPECT_THAT(said("\"ticks\": 0"), HasSubstr("a whole number from 1"));
+  EXPECT_THAT(said("\"ticks\": 1.5"), HasSubstr("a whole number from 1"));
+  EXPECT_THAT(said("\"ticks\": 99999999999999999999"), HasSubstr("a whole number from 1"));
+  EXPECT_THAT(said("\"settings\": {\"gravity\": [1]}"),
+              HasSubstr("/settings/gravity: an array of two numbers"));
+  EXPECT_THAT(said("\"settings\": {\"gravity\": [1, \"2\"]}"), HasSubstr("/settings/gravity/1: a number"));
+  EXPECT_THAT(said("\"settings\": {\"gravity\": [1, 1e400]}"), HasSubstr("too large a number: 1e400"));
+  EXPECT_THAT(said("\"settings\": {\"iterations\": 0}"), HasSubstr("/settings/iterations: "));
+  EXPECT_THAT(said("\"handlers\": [{\"types\": [1, 2], \"do\": \"dance\"}]"),
+              HasSubstr("no handler of this name"));
+  EXPECT_THAT(said("\"bodies\": [{\"type\": \"soft\"}]"), HasSubstr("/bodies/0/type: "));
+  EXPECT_THAT(said("\"bodies\": [{\"position\": [1e7, 0]}]"), HasSubstr("/bodies/0/position: "));
+  EXPECT_THAT(said("\"bodies\": [{\"shapes\": [{\"friction\": 1}]}]"), HasSubstr("/bodies/0/shapes/0: "));
+  EXPECT_THAT(said("\"bodies\": [{\"shapes\": [{\"circle\": -1}]}]"),
+              HasSubstr("Radius should be nonnegative"));
+  EXPECT_THAT(said("\"bodies\": [{\"shapes\": [{\"circle\": 1, \"box\": [1, 1]}]}]"),
+              HasSubstr("one thing only"));
+  EXPECT_THAT(said("\"bodies\": [{\"shapes\": [{\"polygon\": [[0,0],[1,1],[2,2]]}]}]"),
+              HasSubstr("/polygon: "));
+  EXPECT_THAT(said("\"bodies\": [{\"name\": \"a\"}, {\"name\": \"a\"}]"),
+              HasSubstr("there is a body named \"a\""));
+  EXPECT_THAT(said("\"bodies\": [{\"csv\": \"nowhere.csv\"}]"), HasSubstr("nowhere.csv: cannot be read"));
+  EXPECT_THAT(said("\"bodies\": [{\"grid\": {\"columns\": 10000, \"rows\": 10000}}]"),
+              HasSubstr("too many bodies"));
+  EXPECT_THAT(said("\"bodies\": [{\"grid\": {\"columns\": 9, \"across\": [1e6, 0]}}]"),
+              HasSubstr("leads out of"));
+  EXPECT_THAT(said("\"events\": [{\"tick\": 1, \"do\": \"remove\", \"body\": \"x\"}]"),
+              HasSubstr("no body of this name"));
+  EXPECT_THAT(said("\"events\": [{\"tick\": 1, \"do\": \"explode\", \"body\": \"x\"}]"),
+              HasSubstr("no command"));
+  EXPECT_THAT(said("\"inputs\": \"nowhere.csv\""), HasSubstr("nowhere.csv: cannot be read"));
+}
+
+TYPED_TEST(SceneTest, DeepNestingIsRefusedBeforeItCanHarm) {
+  const std::string deep(100000, '[');
+
+  EXPECT_THAT(complaint<TypeParam>("{\"samestep\": " + deep), HasSubstr("nested deeper than 32"));
+}
+
+TYPED_TEST(SceneTest, FamiliesComeInTheSizeAskedFor) {
+  EXPECT_EQ(Scene<TypeParam>(SceneSource::find("pyramid:7")).space().bodyCount(), 28u + 2u);
+  EXPECT_EQ(Scene<TypeParam>(SceneSource::find("soup:50")).space().bodyCount(), 50u + 4u);
+  for (const char* wrong : {"pyramid:0", "pyramid:", "pyramid:1x", "pyramid:201", "soup:-1", "nothing:3"}) {
+    EXPECT_THROW(SceneSource::find(wrong), SceneError) << wrong;
+  }
+}
+
+TYPED_TEST(SceneTest, EverySceneOfTheFolderRuns) {
+  const std::vector<SceneSummary> scenes = listScenes();
+  EXPECT_GE(scenes.size(), 12u);
+  for (const SceneSummary& summary : scenes) {
+    SCOPED_TRACE(summary.name);
+    EXPECT_FALSE(summary.about.empty());
+    Scene<TypeParam> scene(SceneSource::find(summary.name));
+    scene.step();
+    EXPECT_GT(scene.space().shapeCount(), 0u);
+  }
+}
+
+// The peers' scenes are data: of each, the sizes that their description tells.
+TEST(SceneFilesTest, ThePeersScenesHaveTheirBodies) {
+  const auto bodies = [](const char* name) {
+    return Scene<Fixed>(SceneSource::find(name)).space().bodyCount();
+  };
+  EXPECT_EQ(bodies("pyramid40"), 820u + 2u);
+  EXPECT_EQ(bodies("pyramids25"), 25u * 55u + 2u);
+  EXPECT_EQ(bodies("circles"), 2000u + 4u);
+  EXPECT_EQ(bodies("tumbler"), 1000u + 2u);
+  EXPECT_EQ(bodies("soup"), 1000u + 4u);
+  EXPECT_EQ(bodies("sparse"), 10000u + 1u);
+}
+
+TEST(SceneFilesTest, TheArenaIsDrivenByThousandsOfInputs) {
+  Scene<Fixed> scene(SceneSource::find("arena"));
+  std::uint32_t commands = 0;
+  while (scene.tick() < 1200) {
+    while (scene.nextCommand() != nullptr) ++commands;
+    scene.step();
+  }
+  EXPECT_GT(commands, 3000u);
+}
+
+TYPED_TEST(SceneTest, APictureIsTheSameEachTimeAndShowsEachBody) {
+  Scene<TypeParam> scene(SceneSource::find("stack"));
+  for (int i = 0; i < 20; ++i) scene.step();
+
+  const std::string picture = drawSvg(scene.space(), "a < b & c");
+
+  EXPECT_EQ(drawSvg(scene.space(), "a < b & c"), picture);
+  EXPECT_THAT(picture, HasSubstr("a &lt; b &amp; c"));
+  EXPECT_THAT(picture, HasSubstr(">11</text>"));
+  EXPECT_EQ(picture.substr(picture.size() - 7), "</svg>\n");
+}
+
+}  // namespace
+}  // namespace samestep

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/space_codec.h>
+
+#include <gtest/gtest.h>
+
+#include "support/scalars.h"
+#include "support/world.h"
+
+namespace samestep {
+namespace {
+
+template <class S>
+class SpaceCodecTest : public ::testing::Test {};
+TYPED_TEST_SUITE(SpaceCodecTest, AllScalarsAndChecked);
+
+template <Scalar S>
+std::vector<std::uint8_t> encoded(const Space<S>& space) {
+  std::vector<std::uint8_t> bytes;
+  encodeWorld(space.state(), bytes);
+  return bytes;
+}
+
+TYPED_TEST(SpaceCodecTest, AWorldReadBackContinuesAsTheOriginal) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Space<TypeParam> space;
+    fillAtRandom(space, seed);
+    for (int part = 0; part < 4; ++part) {
+      const std::vector<std::uint8_t> bytes = encoded(space);
+      std::uint64_t offset = 0;
+      Space<TypeParam> copy;
+      copy.adopt(decodeWorld<TypeParam>(bytes, offset));
+      ASSERT_EQ(offset, bytes.size());
+      ASSERT_EQ(copy.hash(), space.hash());
+      ASSERT_EQ(encoded(copy), bytes);
+      ASSERT_EQ(hashesOf(copy, 25), hashesOf(space, 25)) << "seed " << seed << ", part " << part;
+    }
+  }
+}
+
+TYPED_TEST(SpaceCodecTest, IdsMintedLaterAreTheSame) {
+  Space<TypeParam> space;
+  std::vector<BodyId> ids;
+  for (int i = 0; i < 6; ++i) ids.push_back(space.add(Body<TypeParam>(TypeParam(1), TypeParam(1))));
+  for (const int i : {4, 1, 2}) space.remove(ids[static_cast<std::size_t>(i)]);
+  std::uint64_t offset = 0;
+  Space<TypeParam> copy;
+  copy.adopt(decodeWorld<TypeParam>(encoded(space), offset));
+
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(copy.add(Body<TypeParam>()), space.add(Body<TypeParam>()));
+  }
+}
+
+TYPED_TEST(SpaceCodecTest, EveryWorldOfALivingSpaceIsWithoutFlaw) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Space<TypeParam> space;
+    fillAtRandom(space, seed);
+    for (int i = 0; i < 50; ++i) {
+      space.step(kTick<TypeParam>);
+      ASSERT_EQ(flawOf(space.state()), nullptr) << "seed " << seed << ", step " << i;
+    }
+  }
+}
+
+TYPED_TEST(SpaceCodecTest, IsRefusedWhereverItIsCutShort) {
+  Space<TypeParam> space;
+  fillAtRandom(space, 2);
+  hashesOf(space, 40);
+  const std::vector<std::uint8_t> bytes = encoded(space);
+  for (std::size_t length = 0; length < bytes.size(); length += 7) {
+    std::uint64_t offset = 0;
+    EXPECT_THROW(decodeWorld<TypeParam>(std::span(bytes).first(length), offset), FormatError);
+    EXPECT_EQ(offset, 0u);
+  }
+}
+
+}  // namespace
+}  // namespace samestep

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <samestep/named_handlers.h>
+#include <samestep/recorder.h>
+#include "support/world.h"
+
+namespace samestep {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Writes the checksum again that recordings end with, after something before it was changed.
+inline void mendChecksum(Bytes& bytes) {
+  if (bytes.size() < 8) return;
+  const std::uint64_t checksum = XXH3_64bits(bytes.data(), bytes.size() - 8);
+  for (unsigned i = 0; i < 8; ++i)
+    bytes[bytes.size() - 8 + i] = static_cast<std::uint8_t>(checksum >> (8 * i));
+}
+
+/// The game's own input of the tests: its first byte is the user data that the static body gets.
+template <Scalar S>
+Wiring<S> testWiring() {
+  Wiring<S> wiring = namedHandlerWiring<S>();
+  wiring.applyInput = [](Space<S>& space, std::span<const std::uint8_t> bytes, void*) {
+    require<Fault::ValueOutOfRange>(!bytes.empty());
+    space.body(space.staticBody()).setUserData(bytes[0]);
+  };
+  return wiring;
+}
+
+/// A disc that falls from (3, 5), as a command.
+template <Scalar S>
+Spawn<S> discToSpawn() {
+  Spawn<S> spawn{Body<S>(), {circleShape<S>({}, S(1))}};
+  spawn.body.setPosition({S(3), S(5)});
+  spawn.shapes[0].setMass(S(2));
+  return spawn;
+}
+
+/// A floor, two boxes on it and one above.
+template <Scalar S>
+BodyId fillSmall(Space<S>& space) {
+  registerNamedHandlers(space);
+  space.setGravity({S(0), S(-10)});
+  space.addWildcardHandler(3, handlerNumber("count"));
+  addWall(space, {S(-20), S(0)}, {S(20), S(0)}, ratio<S>(1, 2));
+  addBox(space, {S(0), S(1)}, S(1), S(1), S(1));
+  const ShapeId top = addBox(space, {ratio<S>(1, 4), S(2)}, S(1), S(1), S(3));
+  space.change(top, [](Shape<S>& shape) { shape.setCollisionType(3); });
+  addBox(space, {S(-2), S(3)}, S(1), S(1), S(1), {S(2), S(0)});
+  return space.shape(top).body();
+}
+
+/// A match of `ticks` steps with each kind of command in it.
+template <Scalar S>
+Bytes recordSmallMatch(std::uint32_t ticks = 24) {
+  Space<S> space;
+  const BodyId player = fillSmall(space);
+  Bytes bytes;
+  Recorder<S> recorder(space, kTick<S>, bytes, testWiring<S>());
+  BodyId spawned;
+  for (std::uint32_t tick = 1; tick <= ticks; ++tick) {
+    if (tick == 2) recorder.apply(ApplyImpulse<S>{player, {S(1), S(3)}, {ratio<S>(1, 4), S(0)}});
+    if (tick == 3) recorder.apply(ApplyForce<S>{player, {S(2), S(0)}, {}});
+    if (tick == 4) spawned = recorder.apply(discToSpawn<S>());
+    if (tick == 5) recorder.apply(SetVelocity<S>{spawned, {S(-1), S(-2)}});
+    if (tick == 6) recorder.apply(SetAngularVelocity<S>{player, S(2)});
+    if (tick == 7) recorder.apply(UserInput{{7, 8, 9}});
+    if (tick == 8) recorder.apply(SetPosition<S>{spawned, {S(4), S(3)}});
+    if (tick == 9) recorder.apply(SetAngle<S>{spawned, S(1)});
+    if (tick == 20) recorder.apply(Remove{spawned});
+    recorder.step();
+  }
+  recorder.finish();
+  return bytes;
+}
+
+}  // namespace samestep

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/verify.h>
+
+#include <gtest/gtest.h>
+
+#include "support/recordings.h"
+#include "support/scalars.h"
+
+namespace samestep {
+namespace {
+
+template <class S>
+class VerifyTest : public ::testing::Test {};
+TYPED_TEST_SUITE(VerifyTest, AllScalars);
+
+/// Where the hash of each step stands.
+template <Scalar S>
+std::vector<std::size_t> hashOffsets(const Bytes& bytes) {
+  std::vector<std::size_t> offsets;
+  RecordingReader<S> reader(bytes);
+  for (RecordingItem item = reader.next(); item != RecordingItem::end; item = reader.next()) {
+    if (item == RecordingItem::step) offsets.push_back(static_cast<std::size_t>(reader.offset()) + 1);
+  }
+  return offsets;
+}
+
+TYPED_TEST(VerifyTest, AFaithfulRecordingMatches) {
+  const Bytes bytes = recordSmallMatch<TypeParam>(100);
+
+  const VerifyResult result = verify<TypeParam>(bytes, testWiring<TypeParam>());
+
+  EXPECT_TRUE(result.matches);
+  EXPECT_EQ(result.ticks, 100u);
+  EXPECT_EQ(result.recordedHash, result.computedHash);
+}
+
+TYPED_TEST(VerifyTest, TheFirstWrongTickIsNamed) {
+  Bytes bytes = recordSmallMatch<TypeParam>(20);
+  const std::vector<std::size_t> hashes = hashOffsets<TypeParam>(bytes);
+  bytes[hashes[12]] ^= 1;
+  bytes[hashes[16]] ^= 1;
+  mendChecksum(bytes);
+
+  const VerifyResult result = verify<TypeParam>(bytes, testWiring<TypeParam>());
+
+  EXPECT_FALSE(result.matches);
+  EXPECT_EQ(result.firstWrongTick, 13u);
+  EXPECT_EQ(result.recordedHash ^ 1, result.computedHash);
+}
+
+TYPED_TEST(VerifyTest, AWrongFirstWorldIsTickZero) {
+  Bytes bytes = recordSmallMatch<TypeParam>(5);
+  // The initial hash stands before the first step's item.
+  const std::size_t initial = hashOffsets<TypeParam>(bytes)[0] - 1 - 8;
+  bytes[initial] ^= 0x80;
+  mendChecksum(bytes);
+
+  const VerifyResult result = verify<TypeParam>(bytes, testWiring<TypeParam>());
+
+  EXPECT_FALSE(result.matches);
+  EXPECT_EQ(result.firstWrongTick, 0u);
+}
+
+TYPED_TEST(VerifyTest, MissingFunctionsAreNamedAsSuch) {
+  const Bytes bytes = recordSmallMatch<TypeParam>(10);
+
+  EXPECT_THROW(verify<TypeParam>(bytes, {}), MissingCallback);
+  EXPECT_THROW(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()), MissingCallback);
+}
+
+TYPED_TEST(VerifyTest, ACommandThatTheWorldRefusesHasAnOffset) {
+  Space<TypeParam> space;
+  const BodyId player = fillSmall(space);
+  Bytes bytes;
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, bytes);
+  recorder.apply(SetVelocity<TypeParam>{player, {TypeParam(1), TypeParam(0)}});
+  recorder.step();
+  recorder.finish();
+  // Item, kind, then the index of the body.
+  const std::size_t command = hashOffsets<TypeParam>(bytes)[0] - 1 - (2 + 8 + 16);
+  bytes[command + 2] ^= 0x40;
+  mendChecksum(bytes);
+
+  try {
+    verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>());
+    FAIL() << "accepted";
+  } catch (const FormatError& error) {
+    EXPECT_EQ(error.offset(), command);
+  }
+}
+
+TYPED_TEST(VerifyTest, WorldsLargerThanAllowedAreRefused) {
+  const Bytes bytes = recordSmallMatch<TypeParam>(10);
+  VerifyOptions options;
+  options.limits.bodies = 3;
+
+  EXPECT_THROW(verify<TypeParam>(bytes, testWiring<TypeParam>(), options), FormatError);
+  // The match begins with four bodies and spawns a fifth.
+  options.limits.bodies = 4;
+  EXPECT_THROW(verify<TypeParam>(bytes, testWiring<TypeParam>(), options), FormatError);
+  options.limits.bodies = 5;
+  EXPECT_TRUE(verify<TypeParam>(bytes, testWiring<TypeParam>(), options).matches);
+}
+
+/// Alters bytes as files are spoilt and as attackers try: flips, numbers, cuts, copies, splices.
+void corrupt(Random& random, Bytes& bytes, const Bytes& other) {
+  const auto size = static_cast<std::uint32_t>(bytes.size());
+  const std::uint32_t at = random.below(size);
+  const auto from = bytes.begin() + at;
+  switch (random.below(8)) {
+    case 0:
+      bytes[at] ^= static_cast<std::uint8_t>(1u << random.below(8));
+      break;
+    case 1:
+      bytes[at] = static_cast<std::uint8_t>(random.below(256));
+      break;
+    case 2:
+      bytes.resize(at);
+      break;
+    case 3:
+      for (std::uint32_t i = at; i < at + 4 && i < size; ++i) bytes[i] = random.oneIn(4) ? 0x7f : 0xff;
+      break;
+    case 4:
+      bytes.erase(from, from + random.below(size - at));
+      break;
+    case 5:
+      bytes.insert(from, bytes.begin(), bytes.begin() + random.below(64));
+      break;
+    case 6:
+      for (std::uint32_t i = at; i < at + random.below(64) && i < size && i < other.size(); ++i)
+        bytes[i] = other[i];
+      break;
+    default:
+      for (std::uint32_t i = at; i < at + 8 && i < size; ++i)
+        bytes[i] = static_cast<std::uint8_t>(random.below(256));
+      break;
+  }
+}
+
+/// The hashes of all worlds of a recording, as it claims them.
+template <Scalar S>
+std::vector<std::uint64_t> claimedHashes(const Bytes& bytes) {
+  std::vector<std::uint64_t> hashes;
+  RecordingReader<S> reader(bytes);
+  hashes.push_back(reader.initialHash());
+  for (RecordingItem item = reader.next(); item != RecordingItem::end; item = reader.next()) {
+    if (item == RecordingItem::step) hashes.push_back(reader.hash());
+  }
+  return hashes;
+}
+
+// Half of them with the checksum mended. One that is taken for good must tell the same history: an input that
+// had no effect, or a shorter match, is all that may have changed.
+TYPED_TEST(VerifyTest, NoneOfFiveThousandCorruptionsCrashesOrIsTakenForAnotherHistory) {
+  const Bytes original = recordSmallMatch<TypeParam>();
+  const Bytes other = recordSmallMatch<TypeParam>(10);
+  const std::vector<std::uint64_t> history = claimedHashes<TypeParam>(original);
+  Random random(20260721);
+  std::uint32_t refused = 0;
+  for (std::uint32_t round = 0; round < 5000; ++round) {
+    Bytes bytes = original;
+    const std::uint32_t times = 1 + random.below(3);
+    for (std::uint32_t i = 0; i < times && !bytes.empty(); ++i) corrupt(random, bytes, other);
+    const bool mended = random.oneIn(2);
+    if (mended) mendChecksum(bytes);
+    if (bytes == original) continue;
+    bool good = false;
+    try {
+      good = verify<TypeParam>(bytes, testWiring<TypeParam>()).matches;
+    } catch (const Error&) {
+      ++refused;
+    }
+    if (!good) continue;
+    ASSERT_TRUE(mended) << "round " << round;
+    const std::vector<std::uint64_t> told = claimedHashes<TypeParam>(bytes);
+    ASSERT_LE(told.size(), history.size()) << "round " << round;
+    ASSERT_TRUE(std::equal(told.begin(), told.end(), history.begin())) << "round " << round;
+  }
+  EXPECT_GT(refused, 2000u);
+}
+
+// Whatever decodes can be stepped: hashes do not protect a reader that has been given worlds made to harm it.
+TYPED_TEST(VerifyTest, AlteredWorldsThatAreAcceptedCanBeStepped) {
+  const Bytes original = recordSmallMatch<TypeParam>();
+  const std::size_t commands = hashOffsets<TypeParam>(original)[0];
+  Random random(7);
+  std::uint32_t stepped = 0;
+  for (std::uint32_t round = 0; round < 3000; ++round) {
+    Bytes bytes = original;
+    const std::uint32_t times = 1 + random.below(4);
+    for (std::uint32_t i = 0; i < times; ++i) {
+      bytes[28 + random.below(static_cast<std::uint32_t>(commands) - 28)] =
+          static_cast<std::uint8_t>(random.below(256));
+    }
+    mendChecksum(bytes);
+    try {
+      Replay<TypeParam> replay(bytes, testWiring<TypeParam>());
+      while (replay.step()) ++stepped;
+      replay.space().hash();
+    } catch (const Error&) {
+      continue;
+    }
+  }
+  EXPECT_GT(stepped, 1000u);
+}
+
+TEST(VerifyAnyTest, TheScalarIsReadFromTheRecording) {
+  Space<Fixed> space;
+  fillSmall(space);
+  Bytes bytes;
+  Recorder<Fixed> recorder(space, kTick<Fixed>, bytes);
+  for (int i = 0; i < 10; ++i) recorder.step();
+  recorder.finish();
+
+  EXPECT_TRUE(verify(bytes).matches);
+}
+
+}  // namespace
+}  // namespace samestep
