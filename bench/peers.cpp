@@ -160,10 +160,14 @@ int run(const Plan& plan) {
   Results results;
   // First, while this process has freed little that a world could be given again.
   if (plan.memory) measureMemory(plan, scenes, results);
-  for (int round = 0; round < plan.rounds; ++round) measureRound(plan, round, scenes, results);
-  const bool written =
-      writeTo(plan.csv, plan, results, writeCsv) && writeTo(plan.details, plan, results, writeDetails);
-  return written ? 0 : 1;
+  for (int round = 0; round < plan.rounds; ++round) {
+    measureRound(plan, round, scenes, results);
+    // Each time, so that a run that is cut short leaves what it found; the standard output takes one table.
+    const bool last = round + 1 == plan.rounds;
+    const bool written = (plan.csv == "-" && !last) || writeTo(plan.csv, plan, results, writeCsv);
+    if (!written || !writeTo(plan.details, plan, results, writeDetails)) return 1;
+  }
+  return 0;
 }
 
 }  // namespace
