@@ -12,8 +12,9 @@ namespace {
 
 std::string versionText() {
   using namespace samestep;
-  return "samestep " + std::string(version()) + "\nsimulation revision " + std::to_string(kSimulationRevision) +
-         "\nscalars " + std::string(builtScalars()) + "\ncompiler " + std::string(compiler());
+  return "samestep " + std::string(version()) + "\nsimulation revision " +
+         std::to_string(kSimulationRevision) + "\nscalars " + std::string(builtScalars()) + "\ncompiler " +
+         std::string(compiler());
 }
 
 }  // namespace
@@ -33,6 +34,8 @@ int main(int argc, char** argv) {
   addHash(app, result);
   addRecord(app, result);
   addVerify(app, result);
+  addDiff(app, result);
+  addDraw(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -99,7 +99,9 @@ void tell(const std::string& file, const std::exception& error) {
   if (const auto* format = dynamic_cast<const FormatError*>(&error)) {
     place += ": offset " + std::to_string(format->offset());
   }
-  std::fprintf(stderr, "samestep: %s: %s\n", place.c_str(), error.what());
+  // Our own errors name the file.
+  const bool named = dynamic_cast<const Unusable*>(&error) != nullptr;
+  std::fprintf(stderr, "samestep: %s%s\n", named ? "" : (place + ": ").c_str(), error.what());
 }
 
 std::string hex(std::uint64_t value) {

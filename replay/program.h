@@ -7,7 +7,7 @@
 #include <exception>
 #include <span>
 #include <string>
-#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <samestep/scalar.h>
@@ -57,6 +57,12 @@ int withScalar(const std::string& name, Visit&& visit) {
   throw Unusable("this build has no scalar \"" + name + "\"");
 }
 
+/// The same for the scalar of a recording.
+template <class Visit>
+int withScalarOf(ScalarKind kind, Visit&& visit) {
+  return withScalar(kind == ScalarKind::fixed ? "fixed" : "double", std::forward<Visit>(visit));
+}
+
 /// Shows on a terminal how far long work is: "record: 1200 of 6000 ticks".
 class Progress {
  public:
@@ -68,7 +74,6 @@ class Progress {
   void clear();
 
  private:
-
   const char* what_;
   std::uint64_t total_;
   std::int64_t next_;
@@ -86,7 +91,7 @@ std::vector<std::uint8_t> readFile(const std::string& path);
 void writeFile(const std::string& path, std::span<const std::uint8_t> bytes);
 void writeFile(const std::string& path, const std::string& text);
 
-/// Says on the error output what is wrong with a file, with the offset of bytes that are malformed.
+/// Says on the error output what is wrong with a file and, of malformed bytes, where.
 void tell(const std::string& file, const std::exception& error);
 
 /// 16 hexadecimal digits.

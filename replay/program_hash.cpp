@@ -34,9 +34,11 @@ int run(const Options& options) {
 }  // namespace
 
 void addHash(CLI::App& app, int& result) {
-  CLI::App* word = app.add_subcommand("hash", "Run a scene and print a fingerprint of its world after every tick");
+  CLI::App* word =
+      app.add_subcommand("hash", "Run a scene and print a fingerprint of its world after every tick");
   auto options = std::make_shared<Options>();
-  word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")->required();
+  word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")
+      ->required();
   addScalarOption(*word, options->scalar);
   addTicksOption(*word, options->ticks);
   word->add_option("--every", options->every, "Print only every K-th tick")

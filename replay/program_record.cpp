@@ -45,9 +45,11 @@ int run(const Options& options) {
 
 void addRecord(CLI::App& app, int& result) {
   CLI::App* word = app.add_subcommand(
-      "record", "Run a scene and write down its start, everything done to it and a fingerprint of every tick");
+      "record",
+      "Run a scene and write down its start, everything done to it and a fingerprint of every tick");
   auto options = std::make_shared<Options>();
-  word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")->required();
+  word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")
+      ->required();
   word->add_option("-o,--output", options->file, "The recording to write")->required();
   addScalarOption(*word, options->scalar);
   addTicksOption(*word, options->ticks);

@@ -17,10 +17,13 @@ void report(const std::string& file, const VerifyResult& result, std::int64_t mi
                 hex(result.computedHash).c_str());
     return;
   }
-  const std::uint64_t perSecond = result.ticks * 1000 / static_cast<std::uint64_t>(std::max<std::int64_t>(milliseconds, 1));
-  std::printf("%s: good: all %llu ticks give the recorded hashes, last %s (%llu ticks/s, %llu times real time at 60 Hz)\n",
-              file.c_str(), static_cast<unsigned long long>(result.ticks), hex(result.computedHash).c_str(),
-              static_cast<unsigned long long>(perSecond), static_cast<unsigned long long>(perSecond / 60));
+  const std::uint64_t perSecond =
+      result.ticks * 1000 / static_cast<std::uint64_t>(std::max<std::int64_t>(milliseconds, 1));
+  std::printf(
+      "%s: good: all %llu ticks give the recorded hashes, last %s (%llu ticks/s, %llu times real time at 60 "
+      "Hz)\n",
+      file.c_str(), static_cast<unsigned long long>(result.ticks), hex(result.computedHash).c_str(),
+      static_cast<unsigned long long>(perSecond), static_cast<unsigned long long>(perSecond / 60));
 }
 
 int verifyFile(const std::string& file) {
@@ -47,8 +50,8 @@ int verifyFile(const std::string& file) {
 }  // namespace
 
 void addVerify(CLI::App& app, int& result) {
-  CLI::App* word =
-      app.add_subcommand("verify", "Replay recordings and check that every tick comes out as it was recorded");
+  CLI::App* word = app.add_subcommand(
+      "verify", "Replay recordings and check that every tick comes out as it was recorded");
   auto files = std::make_shared<std::vector<std::string>>();
   word->add_option("FILE", *files, "Recordings, as 'samestep record' or a game wrote them")->required();
   word->callback([files, &result] {

@@ -5,10 +5,10 @@
 
 #include <variant>
 
+#include "canonical_bytes.h"
 #include "recording_format.h"
 #include "require_ieee.h"
 #include "state_hash.h"
-#include "canonical_bytes.h"
 
 namespace samestep {
 namespace {
@@ -61,7 +61,12 @@ void requireRecordable(const Command<S>& command) {
 template <Scalar S>
 struct Recorder<S>::Impl {
   Impl(Space<S>& spaceIn, S timeStepIn, ByteSink sinkIn, void* dataIn, const Wiring<S>& wiringIn)
-      : space(spaceIn), timeStep(timeStepIn), sink(sinkIn), data(dataIn), wiring(wiringIn), stamp(space.stamp()) {
+      : space(spaceIn),
+        timeStep(timeStepIn),
+        sink(sinkIn),
+        data(dataIn),
+        wiring(wiringIn),
+        stamp(space.stamp()) {
     XXH3_64bits_reset(&checksum);
   }
 

@@ -24,7 +24,8 @@ RecordingInfo readInfo(ByteReader& bytes) {
   read.get(info.revision);
   at = bytes.offset();
   read.get(info.scalar);
-  if (info.scalar != ScalarKind::fixed && info.scalar != ScalarKind::float64) failFormat(at, "unknown scalar");
+  if (info.scalar != ScalarKind::fixed && info.scalar != ScalarKind::float64)
+    failFormat(at, "unknown scalar");
   for (int i = 0; i < 3; ++i) {
     at = bytes.offset();
     if (read.next<std::uint8_t>() != 0) failFormat(at, "a byte that must be zero is not");
@@ -164,7 +165,8 @@ void RecordingReader<S>::readEnd(ByteReader& reader) const {
   if (read.next<std::uint64_t>() != ticks_) failFormat(countAt, "the number of steps is another");
   const std::uint64_t checksumAt = reader.offset();
   const std::uint64_t computed = XXH3_64bits(bytes_.data(), static_cast<std::size_t>(checksumAt));
-  if (read.next<std::uint64_t>() != computed) failFormat(checksumAt, "the checksum is wrong: the bytes were altered");
+  if (read.next<std::uint64_t>() != computed)
+    failFormat(checksumAt, "the checksum is wrong: the bytes were altered");
   if (reader.remaining() > 0) failFormat(reader.offset(), "something follows the end");
 }
 

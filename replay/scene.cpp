@@ -12,7 +12,10 @@ template <Scalar S>
 BodyId* targetOf(Command<S>& command) {
   return std::visit(
       [](auto& c) -> BodyId* {
-        if constexpr (requires { { c.body } -> std::same_as<BodyId&>; }) return &c.body;
+        if constexpr (requires {
+                        { c.body } -> std::same_as<BodyId&>;
+                      })
+          return &c.body;
         return nullptr;
       },
       command);

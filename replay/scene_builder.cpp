@@ -26,7 +26,8 @@ void SceneBuilder<S>::build() {
 template <Scalar S>
 void SceneBuilder<S>::buildFile() {
   const Cursor root(document_.root, document_.file);
-  root.allow({"samestep", "about", "ticks", "stepsPerSecond", "settings", "handlers", "bodies", "events", "inputs"});
+  root.allow(
+      {"samestep", "about", "ticks", "stepsPerSecond", "settings", "handlers", "bodies", "events", "inputs"});
   root.at("samestep").integer(1, 1);
   if (root.has("about")) root.at("about").text();
   if (root.has("ticks")) root.at("ticks").integer(1, 1u << 20);
@@ -226,8 +227,8 @@ Shape<S> SceneBuilder<S>::readGeometry(const Cursor& at) {
 template <Scalar S>
 Shape<S> SceneBuilder<S>::readShape(const Cursor& at) {
   at.allow({"circle", "offset", "box", "polygon", "hull", "segment", "neighbors", "radius", "density", "mass",
-            "friction", "elasticity", "surfaceVelocity", "collisionType", "group", "category", "mask", "sensor",
-            "userData"});
+            "friction", "elasticity", "surfaceVelocity", "collisionType", "group", "category", "mask",
+            "sensor", "userData"});
   Shape<S> shape = readGeometry(at);
   const auto read = [&](const char* key, auto&& set) {
     if (!at.has(key)) return;

@@ -15,7 +15,8 @@ constexpr std::uint32_t kMaxVertices = 8;
 constexpr std::uint32_t kFixedColumns = 11;
 constexpr std::uint32_t kColumns = kFixedColumns + 2 * kMaxVertices;
 constexpr std::string_view kHeader =
-    "body,type,x,y,angle,vx,vy,w,shape,radius,n,v0x,v0y,v1x,v1y,v2x,v2y,v3x,v3y,v4x,v4y,v5x,v5y,v6x,v6y,v7x,v7y";
+    "body,type,x,y,angle,vx,vy,w,shape,radius,n,v0x,v0y,v1x,v1y,v2x,v2y,v3x,v3y,v4x,v4y,v5x,v5y,v6x,v6y,v7x,"
+    "v7y";
 
 /// One row, cut into its columns.
 class Row {
@@ -112,7 +113,8 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
   bool header = true;
   eachLine(text, [&](std::uint32_t line, std::string_view content) {
     if (header) {
-      if (content != kHeader) throw SceneError(file, line, "", "the first line must be: " + std::string(kHeader));
+      if (content != kHeader)
+        throw SceneError(file, line, "", "the first line must be: " + std::string(kHeader));
       header = false;
       return;
     }

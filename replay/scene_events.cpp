@@ -60,7 +60,8 @@ std::vector<std::string_view> splitFields(std::string_view line) {
 }  // namespace
 
 template <Scalar S>
-void SceneBuilder<S>::addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name, Command<S>&& command) {
+void SceneBuilder<S>::addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name,
+                               Command<S>&& command) {
   if (scene_.events_.size() >= kMaxSceneEvents) at.fail("too many events");
   scene_.events_.emplace_back(tick, name, std::move(command));
 }
@@ -130,7 +131,8 @@ void SceneBuilder<S>::readInputs(const Cursor& at) {
     const std::uint32_t name = nameOf(std::string(fields[1]));
     if (name == kNoName) fail("no body is named \"" + std::string(fields[1]) + "\"");
     const std::optional<CommandKind> kind = kindOfWord(fields[2]);
-    if (!kind || *kind == CommandKind::spawn) fail("no command \"" + std::string(fields[2]) + "\" for inputs");
+    if (!kind || *kind == CommandKind::spawn)
+      fail("no command \"" + std::string(fields[2]) + "\" for inputs");
     const auto number = [&](std::string_view digits) {
       S value{};
       if (digits.empty()) return value;

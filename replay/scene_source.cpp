@@ -80,8 +80,8 @@ SceneSummary summaryOf(const SceneSource::Document& document) {
 
 SceneError::SceneError(const std::string& file, std::uint32_t line, const std::string& path,
                        const std::string& reason)
-    : text_(file + ":" + (line > 0 ? std::to_string(line) + ":" : "") + (path.empty() ? "" : " " + path + ":") +
-            " " + reason) {}
+    : text_(file + ":" + (line > 0 ? std::to_string(line) + ":" : "") +
+            (path.empty() ? "" : " " + path + ":") + " " + reason) {}
 
 std::string readSceneFile(const std::string& path) {
   std::error_code error;

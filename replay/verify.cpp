@@ -38,9 +38,11 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const VerifyOptions& op
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
-template VerifyResult verify<double>(std::span<const std::uint8_t>, const Wiring<double>&, const VerifyOptions&);
+template VerifyResult verify<double>(std::span<const std::uint8_t>, const Wiring<double>&,
+                                     const VerifyOptions&);
 #endif
-template VerifyResult verify<Fixed>(std::span<const std::uint8_t>, const Wiring<Fixed>&, const VerifyOptions&);
+template VerifyResult verify<Fixed>(std::span<const std::uint8_t>, const Wiring<Fixed>&,
+                                    const VerifyOptions&);
 template VerifyResult verify<CheckedFixed>(std::span<const std::uint8_t>, const Wiring<CheckedFixed>&,
                                            const VerifyOptions&);
 

@@ -98,7 +98,7 @@ Vector<S> Arbiter<S>::totalImpulse() const {
     y = y + toScaled(speed.y);
   }
   const Scaled<S> mass = lighterMass(*bodies_[0], *bodies_[1]);
-  const Vector<S> impulse(toScalar<S>(x * mass), toScalar<S>(y * mass));
+  const Vector<S> impulse(saturated<S>(x * mass), saturated<S>(y * mass));
   return swapped_ ? -impulse : impulse;
 }
 
@@ -107,7 +107,7 @@ S Arbiter<S>::totalKE() const {
   if (pair_.solved == 0) return S(0);
   const Body<S>& a = *bodies_[0];
   const Body<S>& b = *bodies_[1];
-  const PairResponse<S> response = respond(a, b);
+  const PairResponse<S> whole = respond(a, b);
   const Vector<S> n = pair_.normal;
   const Vector<S> t = perp(n);
   const S loss = (S(1) - pair_.elasticity) / (S(1) + pair_.elasticity);
@@ -116,13 +116,14 @@ S Arbiter<S>::totalKE() const {
     const Contact<S>& contact = pair_.contacts[i];
     const Vector<S> armA = contact.pointA - a.worldCenter();
     const Vector<S> armB = contact.pointB - b.worldCenter();
+    const PairResponse<S> response = whole.at(armA, armB);
     const Scaled<S> normalK = toScaled(effectiveInverseMass(response, cross(armA, n), cross(armB, n)));
     const Scaled<S> tangentK = toScaled(effectiveInverseMass(response, cross(armA, t), cross(armB, t)));
     const Scaled<S> normal = toScaled(contact.normalTotal);
     const Scaled<S> tangent = toScaled(contact.tangentTotal);
     sum = sum + toScaled(loss) * normal * normal * normalK + tangent * tangent * tangentK;
   }
-  return toScalar<S>(sum * lighterMass(a, b));
+  return saturated<S>(sum * lighterMass(a, b));
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

@@ -2,6 +2,7 @@
 #include <samestep/body.h>
 
 #include <samestep/error.h>
+#include <samestep/high_water.h>
 
 #include "require_ieee.h"
 
@@ -43,11 +44,6 @@ template <Scalar S>
 S answer(S force, const Scaled<S>& inverse) {
   if (force == S(0)) return S(0);
   return toScalarWithin(toScaled(force) * inverse, S(1 << 30));
-}
-
-template <Scalar S>
-Vector<S> held(const Vector<S>& v, S limit) {
-  return {clamp(v.x, -limit, limit), clamp(v.y, -limit, limit)};
 }
 
 }  // namespace
@@ -253,7 +249,7 @@ void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint
 template <Scalar S>
 void Body<S>::applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
   const Motion change = pushed(impulse, worldPoint);
-  velocityBias_ = held(velocityBias_ + change.velocity, kMaxSpeed<S>);
+  velocityBias_ = heldWithin(velocityBias_ + change.velocity, kMaxSpeed<S>);
   angularVelocityBias_ =
       clamp(angularVelocityBias_ + change.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
 }
@@ -301,7 +297,9 @@ typename Body<S>::Motion Body<S>::accelerated(const Vector<S>& gravity, S dampin
 
 template <Scalar S>
 std::uint8_t Body<S>::holdVelocity(const Motion& motion) {
-  velocity_ = held(motion.velocity, kMaxSpeed<S>);
+  highWater<S>("body: speed before it is held", max(abs(motion.velocity.x), abs(motion.velocity.y)));
+  highWater<S>("body: spin before it is held", motion.angularVelocity);
+  velocity_ = heldWithin(motion.velocity, kMaxSpeed<S>);
   angularVelocity_ = clamp(motion.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
   return static_cast<std::uint8_t>((velocity_ == motion.velocity ? kHeldNothing : kHeldSpeed) |
                                    (angularVelocity_ == motion.angularVelocity ? kHeldNothing : kHeldSpin));
@@ -322,8 +320,10 @@ template <Scalar S>
 std::uint8_t Body<S>::holdMoved(const Vector<S>& by, S angle, S extent) {
   const Vector<S> moved = center_ + by;
   const S turned = angle_ + angle;
+  highWater<S>("body: position before it is held", max(abs(moved.x), abs(moved.y)));
+  highWater<S>("body: angle before it is held", turned);
   std::uint8_t what = kHeldNothing;
-  center_ = held(moved, extent);
+  center_ = heldWithin(moved, extent);
   if (!(center_ == moved)) {
     what |= kHeldAtBorder;
     if (center_.x != moved.x) velocity_.x = S(0);

@@ -2,6 +2,7 @@
 #include "contact_row.h"
 
 #include <samestep/error.h>
+#include <samestep/high_water.h>
 
 #include "require_ieee.h"
 
@@ -12,29 +13,38 @@ namespace {
 template <Scalar S>
 inline constexpr S kMaxFrictionRatio = S(1 << 10);
 
+/// The largest relative inverse moment, 1/m^2: a disc of 2^-5 m has 2^11.
+template <Scalar S>
+inline constexpr S kMaxRelativeMoment = S(1 << 18);
+
 /// The inverse moment, held where the response to an impulse at `arm` stays in range. Only a moment far
 /// too small for the mass and size of a body is ever held.
 template <Scalar S>
 S heldMoment(S moment, const Vector<S>& arm) {
-  if (moment <= S(256)) [[likely]]
-    return moment;
   const S reach = max(abs(arm.x), abs(arm.y));
-  const S least = ratio<S>(1, 1024);
-  const S held = max(reach, least);
-  return min(moment, S(1 << 24) / held / held);
-}
-
-/// a * b, held within +-kMaxSum.
-template <Scalar S>
-S productHeld(S a, S k) {
-  const S product = k <= S(1 << 10) ? a * k : mulDiv(a, k, S(1));
-  return clamp(product, -kMaxSum<S>, kMaxSum<S>);
+  if (moment <= S(64) && reach <= S(512)) [[likely]]
+    return moment;
+  return reach <= S(8) ? moment : min(moment, S(1 << 24) / reach / reach);
 }
 
 template <Scalar S>
 S relativeMoment(const Body<S>& body, const Scaled<S>& lighterMass) {
   if (body.inverseMoment() == Scaled<S>{}) return S(0);
-  return toScalar<S>(body.inverseMoment() * lighterMass);
+  return toScalarWithin(body.inverseMoment() * lighterMass, kMaxRelativeMoment<S>);
+}
+
+/// Coulomb's limit in units of u, held at its largest without leaving the range on the way.
+template <Scalar S>
+S frictionRatio(S friction, S tangentK, S normalK) {
+  const bool steep = tangentK * ratio<S>(1, 1024) > normalK;
+  return min(mulDiv(steep ? min(friction, S(1)) : friction, tangentK, normalK), kMaxFrictionRatio<S>);
+}
+
+/// An impulse kept as a speed of the lighter body, in units of u.
+template <Scalar S>
+S sumOf(S speed, S k, S inverseK) {
+  const S limit = kMaxSum<S> * inverseK;
+  return speed >= limit ? kMaxSum<S> : speed <= -limit ? -kMaxSum<S> : speed * k;
 }
 
 }  // namespace
@@ -45,10 +55,16 @@ PairResponse<S> respond(const Body<S>& a, const Body<S>& b) {
   const Body<S>& light = aIsLighter ? a : b;
   const Body<S>& heavy = aIsLighter ? b : a;
   const Scaled<S> lightMass = toScaled(light.mass());
+  if (light.inverseMass() == Scaled<S>{}) return {};
   const bool equal = light.inverseMass() == heavy.inverseMass();
   const S heavyInverse = equal ? S(1) : toScalar<S>(heavy.inverseMass() * lightMass);
   return {aIsLighter ? S(1) : heavyInverse, aIsLighter ? heavyInverse : S(1), relativeMoment(a, lightMass),
           relativeMoment(b, lightMass)};
+}
+
+template <Scalar S>
+PairResponse<S> PairResponse<S>::at(const Vector<S>& armA, const Vector<S>& armB) const {
+  return {massA, massB, heldMoment(momentA, armA), heldMoment(momentB, armB)};
 }
 
 template <Scalar S>
@@ -66,9 +82,7 @@ void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairRespo
   const Vector<S> t = perp(n);
   const Vector<S> armA = contact.pointA - a.worldCenter();
   const Vector<S> armB = contact.pointB - b.worldCenter();
-  PairResponse<S> response = whole;
-  response.momentA = heldMoment(whole.momentA, armA);
-  response.momentB = heldMoment(whole.momentB, armB);
+  const PairResponse<S> response = whole.at(armA, armB);
 
   row.normal = n;
   row.normalArmA = cross(armA, n);
@@ -89,22 +103,32 @@ void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairRespo
   row.tangentSpinB = response.momentB * row.tangentArmB * tangentMass;
   row.normalScale = normalMass;
   row.tangentScale = tangentMass;
-  row.friction = min(mulDiv(pair.friction, tangentK, normalK), kMaxFrictionRatio<S>);
+  row.friction = frictionRatio(pair.friction, tangentK, normalK);
   row.surface = dot(pair.surfaceVelocity, t);
-  row.normalSum = productHeld(contact.normalSpeed, normalK);
-  row.tangentSum = productHeld(contact.tangentSpeed, tangentK);
+  row.normalSum = max(sumOf(contact.normalSpeed, normalK, normalMass), S(0));
+  row.tangentSum = sumOf(contact.tangentSpeed, tangentK, tangentMass);
+  // Of a body that nothing turns the arm counts for nothing.
+  highWater<S>("contact: r x n of a body that turns", response.momentA > S(0) ? row.normalArmA : S(0));
+  highWater<S>("contact: r x n of a body that turns", response.momentB > S(0) ? row.normalArmB : S(0));
+  highWater<S>("contact: inverse effective mass k", max(normalK, tangentK));
+  highWater<S>("contact: spin per unit of u", max(abs(row.spinA), abs(row.spinB)));
+  highWater<S>("contact: friction ratio", row.friction);
+  highWater<S>("contact: kept impulse u", row.normalSum);
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
+template struct PairResponse<double>;
 template PairResponse<double> respond(const Body<double>&, const Body<double>&);
 template double effectiveInverseMass(const PairResponse<double>&, double, double);
 template void prepareAxes(const Pair<double>&, const Contact<double>&, const PairResponse<double>&,
                           const Body<double>&, const Body<double>&, ContactAxes<double>&);
 #endif
+template struct PairResponse<Fixed>;
 template PairResponse<Fixed> respond(const Body<Fixed>&, const Body<Fixed>&);
 template Fixed effectiveInverseMass(const PairResponse<Fixed>&, Fixed, Fixed);
 template void prepareAxes(const Pair<Fixed>&, const Contact<Fixed>&, const PairResponse<Fixed>&,
                           const Body<Fixed>&, const Body<Fixed>&, ContactAxes<Fixed>&);
+template struct PairResponse<CheckedFixed>;
 template PairResponse<CheckedFixed> respond(const Body<CheckedFixed>&, const Body<CheckedFixed>&);
 template CheckedFixed effectiveInverseMass(const PairResponse<CheckedFixed>&, CheckedFixed, CheckedFixed);
 template void prepareAxes(const Pair<CheckedFixed>&, const Contact<CheckedFixed>&,

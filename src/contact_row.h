@@ -17,8 +17,12 @@ template <Scalar S>
 struct PairResponse {
   S massA{}, massB{};      ///< Inverse masses, in [0, 1].
   S momentA{}, momentB{};  ///< Inverse moments, 1/m^2.
+
+  /// To an impulse at the given places: moments far too small for them are held.
+  PairResponse at(const Vector<S>& armA, const Vector<S>& armB) const;
 };
 
+/// All 0 if nothing moves either body.
 template <Scalar S>
 PairResponse<S> respond(const Body<S>& a, const Body<S>& b);
 

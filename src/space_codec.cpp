@@ -55,8 +55,9 @@ const char* flawOf(const WorldState<S>& world, const Pair<S>& pair) {
   }
   const S most(kMaxMaterial);
   const S unit = ratio<S>(1026, 1024);
-  if (!within(pair.normal, unit) || !within(pair.surfaceVelocity, most * S(8)) || !(pair.elasticity >= S(0)) ||
-      !(pair.elasticity <= most) || !(pair.friction >= S(0)) || !(pair.friction <= most)) {
+  if (!within(pair.normal, unit) || !within(pair.surfaceVelocity, most * S(8)) ||
+      !(pair.elasticity >= S(0)) || !(pair.elasticity <= most) || !(pair.friction >= S(0)) ||
+      !(pair.friction <= most)) {
     return "a pair is out of range";
   }
   for (const Contact<S>& contact : pair.contacts) {

@@ -7,6 +7,22 @@
 
 namespace samestep {
 
+namespace {
+
+/// The largest part of an overlap that goes per second.
+template <Scalar S>
+inline constexpr S kMaxBiasRate = S(1 << 14);
+/// The largest factor by which a longer step enlarges the impulses kept from the last one.
+template <Scalar S>
+inline constexpr S kMaxStepRatio = S(1 << 10);
+
+template <Scalar S>
+S stepRatio(S dt, S before) {
+  return dt >= before * kMaxStepRatio<S> ? kMaxStepRatio<S> : dt / before;
+}
+
+}  // namespace
+
 template <Scalar S>
 void Space<S>::step(S dt) {
   requireUnlocked();
@@ -30,7 +46,7 @@ void Space<S>::step(S dt) {
       expirePairs();
       preStep(dt);
       integrateVelocities(dt);
-      solve(before == S(0) ? S(0) : dt / before);
+      solve(before == S(0) ? S(0) : stepRatio(dt, before));
     } else {
       updateShapes();
       findPairs();
@@ -336,7 +352,7 @@ template <Scalar S>
 void Space<S>::preStep(S dt) {
   Impl& impl = *impl_;
   const S remaining = S(1) - pow(collisionBias(), dt);
-  const S biasRate = min(remaining / dt, S(1 << 14));
+  const S biasRate = remaining > dt * kMaxBiasRate<S> ? kMaxBiasRate<S> : remaining / dt;
   impl.solver.rows.clear();
   impl.solver.bodies.clear();
   eachSolvedPair(
@@ -397,8 +413,8 @@ void Space<S>::solve(S dtCoefficient) {
     if (!body.isDynamic()) continue;
     const ImpulseBody<S>& solved = solver.bodies[i];
     impl.held[index] |= body.holdVelocity({solved.velocity, solved.angularVelocity});
-    body.velocityBias_ = solved.biasVelocity;
-    body.angularVelocityBias_ = solved.biasAngularVelocity;
+    body.velocityBias_ = heldWithin(solved.biasVelocity, kMaxSpeed<S>);
+    body.angularVelocityBias_ = clamp(solved.biasAngularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
   }
   endStage(Stage::solve);
 }

@@ -164,8 +164,10 @@ class Arbiter {
 
   /// The impulse of the last step on B, friction included, N s, saturated. MIS: arbiterTotalImpulse
   Vector<S> totalImpulse() const;
-  /// What the impulses of the last step took from the bodies' kinetic energy, J, saturated. MIS:
-  /// arbiterTotalKE
+  /// As in Chipmunk, the sum over the points of jn^2 / nMass (1 - e) / (1 + e) + jt^2 / tMass: twice what an
+  /// impact takes from the kinetic energy, J, saturated; 0 where nothing was solved.
+  /// @throws UnsolvableCollision if nothing moves either body any more
+  /// MIS: arbiterTotalKE
   S totalKE() const;
 
   /// The state behind it.

@@ -59,6 +59,11 @@ template <Scalar S>
   return within(v.x, limit) && within(v.y, limit);
 }
 
+/// v, each component held within +-limit.
+template <Scalar S>
+inline constexpr Vector<S> heldWithin(const Vector<S>& v, S limit) {
+  return {clamp(v.x, -limit, limit), clamp(v.y, -limit, limit)};
+}
 /// The number a Scaled stands for, held within +-limit.
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr S toScalarWithin(const Scaled<S>& x, S limit) {

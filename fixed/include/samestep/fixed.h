@@ -121,7 +121,7 @@ class BasicFixed {
     return wrap(0 - static_cast<std::uint64_t>(a.raw_));
   }
   friend constexpr BasicFixed operator*(BasicFixed a, BasicFixed b) {
-    return rounded("multiply", {}, a.raw_, b.raw_);
+    return rounded<false>("multiply", 0, a.raw_, b.raw_);
   }
   friend constexpr BasicFixed operator/(BasicFixed a, BasicFixed b) {
     const raw::Quotient result = raw::divide<way::Chosen, kFractionBits>(a.raw_, b.raw_, kMinRaw, kMaxRaw);
@@ -137,11 +137,11 @@ class BasicFixed {
 
   /// a b + c, rounded once.
   friend constexpr BasicFixed mulAdd(BasicFixed a, BasicFixed b, BasicFixed c) {
-    return rounded("mulAdd", c, a.raw_, b.raw_);
+    return rounded<true>("mulAdd", c.raw_, a.raw_, b.raw_);
   }
   /// a b + c d, rounded once.
   friend constexpr BasicFixed dot(BasicFixed a, BasicFixed b, BasicFixed c, BasicFixed d) {
-    return rounded("dot", {}, a.raw_, b.raw_, c.raw_, d.raw_);
+    return rounded<false>("dot", 0, a.raw_, b.raw_, c.raw_, d.raw_);
   }
   /// a b - c d, rounded once.
   friend constexpr BasicFixed cross(BasicFixed a, BasicFixed b, BasicFixed c, BasicFixed d) {
@@ -161,12 +161,12 @@ class BasicFixed {
   /// a0 b0 + a1 b1 + a2 b2, rounded once.
   friend constexpr BasicFixed dot3(BasicFixed a0, BasicFixed b0, BasicFixed a1, BasicFixed b1, BasicFixed a2,
                                    BasicFixed b2) {
-    return rounded("dot3", {}, a0.raw_, b0.raw_, a1.raw_, b1.raw_, a2.raw_, b2.raw_);
+    return rounded<false>("dot3", 0, a0.raw_, b0.raw_, a1.raw_, b1.raw_, a2.raw_, b2.raw_);
   }
   /// a0 b0 + a1 b1 + a2 b2 + a3 b3, rounded once.
   friend constexpr BasicFixed dot4(BasicFixed a0, BasicFixed b0, BasicFixed a1, BasicFixed b1, BasicFixed a2,
                                    BasicFixed b2, BasicFixed a3, BasicFixed b3) {
-    return rounded("dot4", {}, a0.raw_, b0.raw_, a1.raw_, b1.raw_, a2.raw_, b2.raw_, a3.raw_, b3.raw_);
+    return rounded<false>("dot4", 0, a0.raw_, b0.raw_, a1.raw_, b1.raw_, a2.raw_, b2.raw_, a3.raw_, b3.raw_);
   }
   /// a b / c, rounded once; saturates like a quotient.
   friend constexpr BasicFixed mulDiv(BasicFixed a, BasicFixed b, BasicFixed c) {
@@ -207,17 +207,23 @@ class BasicFixed {
     if constexpr (sizeof...(rest) > 0) addProducts(total, rest...);
   }
 
-  /// The sum of c and the products of the factors taken two by two, rounded once.
-  template <class... Factors>
-  static constexpr BasicFixed rounded(const char* operation, BasicFixed c, Factors... factors) {
+  /// The sum of the addend and the products of the factors taken two by two, rounded once.
+  template <bool kHasAddend, class... Factors>
+  static constexpr BasicFixed rounded(const char* operation, std::int64_t addend, Factors... factors) {
     raw::ProductSum<way::Chosen, kFractionBits> sum;
     addProducts(sum, factors...);
-    sum.plus(c.raw_);
+    sum.plus(addend);
     if constexpr (kChecks) {
       raw::ExactSum<kFractionBits> exact;
       addProducts(exact, factors...);
-      exact.plus(c.raw_);
-      if (!exact.fits(kMinRaw, kMaxRaw)) raw::report(operation, kFractionBits, {factors..., c.raw_});
+      exact.plus(addend);
+      if (!exact.fits(kMinRaw, kMaxRaw)) {
+        if constexpr (kHasAddend) {
+          raw::report(operation, kFractionBits, {factors..., addend});
+        } else {
+          raw::report(operation, kFractionBits, {factors...});
+        }
+      }
     }
     return wrap(static_cast<std::uint64_t>(sum.rounded()));
   }

@@ -131,9 +131,9 @@ template <class Way, int kShift>
 constexpr Quotient longDivide(std::int64_t a, std::int64_t b, std::int64_t least, std::int64_t most) {
   const std::uint64_t n = magnitude(a);
   // A shift above 64 is that of a reciprocal, where a is 1.
-  const std::uint64_t high = kShift >= 64  ? n << (kShift - 64) % 64
-                             : kShift == 0 ? 0
-                                           : n >> (64 - kShift) % 64;
+  constexpr int kAbove = kShift > 64 ? kShift - 64 : 0;
+  constexpr int kBelow = kShift > 0 && kShift < 64 ? 64 - kShift : 0;
+  const std::uint64_t high = kShift >= 64 ? n << kAbove : kShift == 0 ? 0 : n >> kBelow;
   const std::uint64_t low = kShift >= 64 ? 0 : n << kShift % 64;
   return roundedQuotient<Way>(high, low, magnitude(b), (a ^ b) < 0, least, most);
 }
@@ -193,7 +193,8 @@ constexpr std::int64_t squareRoot(std::int64_t x) {
 /// sqrt(x^2 + y^2); saturates to `most`.
 template <class Way>
 constexpr Quotient length(std::int64_t x, std::int64_t y, std::int64_t most) {
-  if ((x | y) == 0) [[unlikely]] return {0, true};
+  if ((x | y) == 0) [[unlikely]]
+    return {0, true};
   const std::uint64_t root = Way::Root::template length<typename Way::Words>(x, y);
   if (root > magnitude(most)) return {most, false};
   return {static_cast<std::int64_t>(root), true};

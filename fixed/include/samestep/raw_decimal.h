@@ -49,7 +49,7 @@ constexpr DecimalText formatDecimal(std::int64_t value, int bits) {
     const std::uint64_t decimal = ((scaled + Halves{0, one >> 1}) >> bits).low;
     const Halves back = Halves{0, decimal} << bits;
     const std::uint64_t distance = (back > scaled ? back - scaled : scaled - back).low;
-    if (distance < scale - distance || (distance == scale - distance && size % 2 == 0)) {
+    if (2 * distance < scale || (2 * distance == scale && size % 2 == 0)) {
       text.append('.');
       appendInteger(text, decimal, digits);
       return text;

@@ -318,7 +318,7 @@ struct RootByDouble {
   static constexpr std::uint64_t corrected(std::int64_t root, std::uint64_t low) {
     const auto rest =
         static_cast<std::int64_t>(low - static_cast<std::uint64_t>(root) * static_cast<std::uint64_t>(root));
-    return static_cast<std::uint64_t>(root + (rest > root ? 1 : 0) - (rest <= -root && root > 0 ? 1 : 0));
+    return static_cast<std::uint64_t>(root + (rest > root ? 1 : 0) - (rest <= -root ? 1 : 0));
   }
 };
 

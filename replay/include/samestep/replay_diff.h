@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <samestep/state_diff.h>
+#include <samestep/verify.h>
+
+namespace samestep {
+
+/// Where two recordings part.
+struct ReplayDifference {
+  bool worldsDiffer = false;
+  /// The first step after which they do, 0 for the worlds before the first; else the steps compared.
+  std::uint64_t tick = 0;
+  /// Where in that step: "start", "commands" (before the step itself), or the name of a stage.
+  std::string stage;
+  /// There, at most as many as asked for.
+  std::vector<FieldDifference> fields;
+  /// The first step before which different things were done, 0 if there is none up to `tick`.
+  std::uint64_t commandTick = 0;
+  /// What was done in one only then, in words.
+  std::vector<std::string> onlyA;
+  std::vector<std::string> onlyB;
+};
+
+/// Replays two recordings side by side until their worlds differ or one ends.
+/// @throws as verify
+template <Scalar S>
+ReplayDifference findDifference(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b,
+                                const Wiring<S>& wiring, std::uint32_t mostFields,
+                                const VerifyOptions& options = {});
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template ReplayDifference findDifference<double>(std::span<const std::uint8_t>,
+                                                        std::span<const std::uint8_t>, const Wiring<double>&,
+                                                        std::uint32_t, const VerifyOptions&);
+#endif
+extern template ReplayDifference findDifference<Fixed>(std::span<const std::uint8_t>,
+                                                       std::span<const std::uint8_t>, const Wiring<Fixed>&,
+                                                       std::uint32_t, const VerifyOptions&);
+extern template ReplayDifference findDifference<CheckedFixed>(std::span<const std::uint8_t>,
+                                                              std::span<const std::uint8_t>,
+                                                              const Wiring<CheckedFixed>&, std::uint32_t,
+                                                              const VerifyOptions&);
+
+}  // namespace samestep

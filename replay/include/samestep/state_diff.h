@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <samestep/command.h>
+
+namespace samestep {
+
+/// One field in which two worlds differ.
+struct FieldDifference {
+  std::string object;  ///< "settings", "body 7", "shape 9 of body 7", "pair of shapes 3 and 9", ...
+  std::string field;   ///< "velocity.x"; "exists" where only one world has the object.
+  std::string a;       ///< The values: a number as decimal and as its 64 bits.
+  std::string b;
+};
+
+/// The fields in which two worlds differ, at most `most`, in the order of the canonical encoding: settings
+/// and clock, bodies, shapes, pairs, handlers, each by rising id.
+template <Scalar S>
+std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldState<S>& b,
+                                         std::uint32_t most = 0xffffffffu);
+
+/// A command in words: "impulse: body 5, impulse (3, 0), arm (0, 0)".
+template <Scalar S>
+std::string describe(const Command<S>& command);
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template std::vector<FieldDifference> differences<double>(const WorldState<double>&,
+                                                                 const WorldState<double>&, std::uint32_t);
+extern template std::string describe<double>(const Command<double>&);
+#endif
+extern template std::vector<FieldDifference> differences<Fixed>(const WorldState<Fixed>&,
+                                                                const WorldState<Fixed>&, std::uint32_t);
+extern template std::string describe<Fixed>(const Command<Fixed>&);
+extern template std::vector<FieldDifference> differences<CheckedFixed>(const WorldState<CheckedFixed>&,
+                                                                       const WorldState<CheckedFixed>&,
+                                                                       std::uint32_t);
+extern template std::string describe<CheckedFixed>(const Command<CheckedFixed>&);
+
+}  // namespace samestep
