@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "samestep/fixed_tables.h"
@@ -93,7 +94,7 @@ constexpr std::int64_t atan2(std::int64_t y, std::int64_t x) {
   const std::uint64_t part = (t << 14) - ((cube >> 32) * factor >> 8);  // Q62
   // Mirrored at the diagonal where steep, and at the y axis where x < 0. Q62.
   const bool left = x < 0;
-  const std::uint64_t from = kArcBase[base + (steep ? 3u : 0u) + (left ? 6u : 0u)];
+  const std::uint64_t from = kArcBase[static_cast<std::size_t>(base) + (steep ? 3u : 0u) + (left ? 6u : 0u)];
   const std::uint64_t angle = from + static_cast<std::uint64_t>(negatedIf((below != steep) != left, part));
   return negatedIf(y < 0, (angle + (std::uint64_t{1} << 29)) >> 30);
 }
@@ -146,13 +147,13 @@ constexpr Quotient exp(std::int64_t x) {
 struct Normalized {
   std::uint64_t mantissa;
   std::int64_t exponent;
-  std::uint64_t interval;
+  std::size_t interval;
 };
 
 constexpr Normalized normalized(std::int64_t x) {
   const int zeros = std::countl_zero(static_cast<std::uint64_t>(x));
   const std::uint64_t mantissa = static_cast<std::uint64_t>(x) << zeros;
-  return {mantissa, 31 - zeros, mantissa >> 57 & 63};
+  return {mantissa, 31 - zeros, static_cast<std::size_t>(mantissa >> 57 & 63)};
 }
 
 template <class Way>
