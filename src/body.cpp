@@ -2,6 +2,7 @@
 #include <samestep/body.h>
 
 #include <samestep/error.h>
+#include <samestep/high_water.h>
 
 #include "require_ieee.h"
 
@@ -296,6 +297,8 @@ typename Body<S>::Motion Body<S>::accelerated(const Vector<S>& gravity, S dampin
 
 template <Scalar S>
 std::uint8_t Body<S>::holdVelocity(const Motion& motion) {
+  highWater<S>("body: speed before it is held", max(abs(motion.velocity.x), abs(motion.velocity.y)));
+  highWater<S>("body: spin before it is held", motion.angularVelocity);
   velocity_ = heldWithin(motion.velocity, kMaxSpeed<S>);
   angularVelocity_ = clamp(motion.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
   return static_cast<std::uint8_t>((velocity_ == motion.velocity ? kHeldNothing : kHeldSpeed) |
@@ -317,6 +320,8 @@ template <Scalar S>
 std::uint8_t Body<S>::holdMoved(const Vector<S>& by, S angle, S extent) {
   const Vector<S> moved = center_ + by;
   const S turned = angle_ + angle;
+  highWater<S>("body: position before it is held", max(abs(moved.x), abs(moved.y)));
+  highWater<S>("body: angle before it is held", turned);
   std::uint8_t what = kHeldNothing;
   center_ = heldWithin(moved, extent);
   if (!(center_ == moved)) {

@@ -73,8 +73,8 @@ bool endsMayTouch(const PlacedShape<S>& a, const PlacedShape<S>& b, const Closes
 
 /// Two shapes of which a face is nearest to a vertex.
 template <Scalar S>
-void touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis,
-               S margin, CollisionInfo<S>& info) {
+void touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis, S margin,
+               CollisionInfo<S>& info) {
   const PlacedShape<S>&reference = axis.onB ? b : a, &other = axis.onB ? a : b;
   const Vector<S> outward = reference.planes[axis.face].n;
   if (!endMayTouch(other, axis.vertex, -outward)) return;

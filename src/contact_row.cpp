@@ -2,6 +2,7 @@
 #include "contact_row.h"
 
 #include <samestep/error.h>
+#include <samestep/high_water.h>
 
 #include "require_ieee.h"
 
@@ -106,6 +107,13 @@ void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairRespo
   row.surface = dot(pair.surfaceVelocity, t);
   row.normalSum = max(sumOf(contact.normalSpeed, normalK, normalMass), S(0));
   row.tangentSum = sumOf(contact.tangentSpeed, tangentK, tangentMass);
+  // Of a body that nothing turns the arm counts for nothing.
+  highWater<S>("contact: r x n of a body that turns", response.momentA > S(0) ? row.normalArmA : S(0));
+  highWater<S>("contact: r x n of a body that turns", response.momentB > S(0) ? row.normalArmB : S(0));
+  highWater<S>("contact: inverse effective mass k", max(normalK, tangentK));
+  highWater<S>("contact: spin per unit of u", max(abs(row.spinA), abs(row.spinB)));
+  highWater<S>("contact: friction ratio", row.friction);
+  highWater<S>("contact: kept impulse u", row.normalSum);
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "sequential_impulse.h"
 
+#include <samestep/high_water.h>
+
 #include "require_ieee.h"
 
 namespace samestep {
@@ -49,6 +51,8 @@ void ImpulseSolver<S>::iterate() {
     const S normalBefore = row.normalSum;
     row.normalSum = clamp(normalBefore - (row.bounce + normal), S(0), kMaxSum<S>);
     const S limit = row.friction * row.normalSum;
+    highWater<S>("impulses: relative speed", max(abs(normal), abs(tangent)));
+    highWater<S>("impulses: friction limit", limit);
     const S tangentBefore = row.tangentSum;
     row.tangentSum = clamp(tangentBefore - tangent, -limit, limit);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "soft_step.h"
 
+#include <samestep/high_water.h>
+
 #include "require_ieee.h"
 
 namespace samestep {
@@ -92,6 +94,9 @@ template <bool kSprings, Scalar S>
   row.normalSum =
       clamp(normalBefore - dot(massScale, normal + target, impulseScale, normalBefore), S(0), kMaxSum<S>);
   row.normalMost = max(row.normalMost, row.normalSum);
+  highWater<S>("soft step: relative speed", max(abs(normal), abs(tangent)));
+  highWater<S>("soft step: target speed", target);
+  highWater<S>("soft step: friction limit", limit);
   answerNormal(row, row.normalSum - normalBefore, a.velocity, a.angularVelocity, b.velocity,
                b.angularVelocity);
 }
@@ -144,6 +149,7 @@ void SoftSolver<S>::sum() {
   for (SoftRow<S>& row : rows) {
     row.normalTotal += row.normalSum;
     row.tangentTotal += row.tangentSum;
+    highWater<S>("soft step: impulse total", row.normalTotal);
   }
 }
 
