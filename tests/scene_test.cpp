@@ -63,8 +63,10 @@ TYPED_TEST(SceneTest, NumbersAreReadExactlyFromTheirText) {
 
 TYPED_TEST(SceneTest, SettingsTimeStepAndHandlersAreTaken) {
   const Scene<TypeParam> scene(SceneSource::fromText(
-      R"({"samestep": 1, "stepsPerSecond": 64, "settings": {"gravity": [1, -2], "iterations": 7, "damping": 0.5,
-          "collisionSlop": 0.25, "collisionBias": 0.125, "collisionPersistence": 9, "worldExtent": 100},
+      R"({"samestep": 1, "stepsPerSecond": 64,
+          "settings": {"gravity": [1, -2], "iterations": 7, "damping": 0.5,
+                       "collisionSlop": 0.25, "collisionBias": 0.125, "collisionPersistence": 9,
+                       "worldExtent": 100},
           "handlers": [{"types": [1, 2], "do": "ignore"}, {"type": 3, "do": "count"},
                        {"all": true, "do": "slippery"}]})",
       "test.json"));
