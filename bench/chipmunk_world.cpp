@@ -2,36 +2,27 @@
 #include <chipmunk/chipmunk.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "peer_worlds.h"
 
 namespace samestep::bench {
 namespace {
 
-double number(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
-
 class ChipmunkWorld : public World {
  public:
-  explicit ChipmunkWorld(const PeerScene& scene) : space_(cpSpaceNew()) {
+  ChipmunkWorld(const PeerScene& scene, int iterations) : space_(cpSpaceNew()) {
+    cpSpaceSetIterations(space_, iterations);
     cpSpaceSetGravity(space_, cpv(number(scene.gravityX), number(scene.gravityY)));
     cpSpaceSetCollisionSlop(space_, 0.005);
     int last = -1;
-    cpBody* body = nullptr;
     for (const SceneShape& row : scene.shapes) {
       const bool first = row.body != last;
       last = row.body;
-      if (first) body = addBody(row);
-      addShape(row, body, first);
+      if (first) bodies_.push_back(addBody(row));
+      shapes_.push_back(addShape(row, bodies_.back(), first));
     }
   }
   ~ChipmunkWorld() override {
-    cpSpaceEachShape(
-        space_, [](cpShape* shape, void* all) { static_cast<std::vector<cpShape*>*>(all)->push_back(shape); },
-        &shapes_);
-    cpSpaceEachBody(
-        space_, [](cpBody* body, void* all) { static_cast<std::vector<cpBody*>*>(all)->push_back(body); },
-        &bodies_);
     for (cpShape* shape : shapes_) {
       cpSpaceRemoveShape(space_, shape);
       cpShapeFree(shape);
@@ -43,6 +34,16 @@ class ChipmunkWorld : public World {
     cpSpaceFree(space_);
   }
   void step() override { cpSpaceStep(space_, 1.0 / 60.0); }
+  std::vector<Motion> motions() const override {
+    std::vector<Motion> all;
+    for (const cpBody* body : bodies_) {
+      const cpVect position = cpBodyGetPosition(body);
+      const cpVect velocity = cpBodyGetVelocity(body);
+      all.push_back({position.x, position.y, cpBodyGetAngle(body), velocity.x, velocity.y,
+                     cpBodyGetAngularVelocity(body)});
+    }
+    return all;
+  }
 
  private:
   cpBody* addBody(const SceneShape& row) {
@@ -58,9 +59,9 @@ class ChipmunkWorld : public World {
     }
     return body;
   }
-  void addShape(const SceneShape& row, cpBody* body, bool first) {
+  cpShape* addShape(const SceneShape& row, cpBody* body, bool first) {
     cpShape* shape;
-    if (row.shape == "circle") {
+    if (row.isCircle()) {
       shape = cpCircleShapeNew(body, number(row.radius), cpvzero);
     } else {
       std::vector<cpVect> vertices;
@@ -70,8 +71,8 @@ class ChipmunkWorld : public World {
       shape = cpPolyShapeNewRaw(body, static_cast<int>(vertices.size()), vertices.data(), 0);
     }
     cpShapeSetFriction(shape, std::sqrt(0.6));
-    if (first && row.type == "dynamic") cpShapeSetDensity(shape, 1);
-    cpSpaceAddShape(space_, shape);
+    if (first && row.isDynamic()) cpShapeSetDensity(shape, 1);
+    return cpSpaceAddShape(space_, shape);
   }
 
   cpSpace* space_;
@@ -81,6 +82,8 @@ class ChipmunkWorld : public World {
 
 }  // namespace
 
-std::unique_ptr<World> makeChipmunk(const PeerScene& scene) { return std::make_unique<ChipmunkWorld>(scene); }
+std::unique_ptr<World> makeChipmunk(const PeerScene& scene, int iterations) {
+  return std::make_unique<ChipmunkWorld>(scene, iterations);
+}
 
 }  // namespace samestep::bench

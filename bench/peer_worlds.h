@@ -2,20 +2,43 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "peer_scene.h"
 
 namespace samestep::bench {
 
+/// Where a body is and how it moves: its origin in m, its angle in rad, the velocity of its centre of mass in
+/// m/s, its angular velocity in rad/s.
+struct Motion {
+  double x, y, angle, vx, vy, w;
+};
+
 /// A scene running in one engine.
 class World {
  public:
   virtual ~World() = default;
+  /// One step of 1/60 s.
   virtual void step() = 0;
+  /// Of all bodies, in the order of the scene.
+  virtual std::vector<Motion> motions() const = 0;
 };
 
-std::unique_ptr<World> makeDouble(const PeerScene& scene);
-std::unique_ptr<World> makeFixed(const PeerScene& scene);
-std::unique_ptr<World> makeChipmunk(const PeerScene& scene);
+/// How Samestep solves contacts.
+struct SolverChoice {
+  bool soft = false;
+  int count = 10;  ///< Substeps of the soft step, or iterations of the sequential impulses.
+};
+
+std::unique_ptr<World> makeDouble(const PeerScene& scene, SolverChoice solver);
+std::unique_ptr<World> makeFixed(const PeerScene& scene, SolverChoice solver);
+std::unique_ptr<World> makeChipmunk(const PeerScene& scene, int iterations);
+std::unique_ptr<World> makeBox2d(const PeerScene& scene);
+
+/// The scene in the engine of that name: `chipmunk` (10 iterations; `chipmunkN` for N), `box2d24` (8 velocity
+/// and 3 position iterations), `samestep-double-impulsesN`, `samestep-double-softN` (N substeps), and the
+/// same with `fixed`. Null if there is no such engine.
+std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene);
 
 }  // namespace samestep::bench

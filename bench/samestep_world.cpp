@@ -13,7 +13,7 @@ namespace samestep::bench {
 namespace {
 
 template <Scalar S>
-S number(const std::string& text) {
+S exactly(const std::string& text) {
   S value;
   if (parseDecimal(text, value) == DecimalStatus::ok) return value;
   std::fprintf(stderr, "not a number: %s\n", text.c_str());
@@ -23,53 +23,71 @@ S number(const std::string& text) {
 template <Scalar S>
 class SamestepWorld : public World {
  public:
-  explicit SamestepWorld(const PeerScene& scene) {
-    space_.setGravity({number<S>(scene.gravityX), number<S>(scene.gravityY)});
+  SamestepWorld(const PeerScene& scene, SolverChoice solver) {
+    if (solver.soft) {
+      space_.setSolver(SolverKind::softStep);
+      space_.setSubsteps(solver.count);
+    } else {
+      space_.setSolver(SolverKind::sequentialImpulses);
+      space_.setIterations(solver.count);
+    }
+    space_.setGravity({exactly<S>(scene.gravityX), exactly<S>(scene.gravityY)});
     space_.setCollisionSlop(ratio<S>(1, 200));
     int last = -1;
-    BodyId id;
     for (const SceneShape& shape : scene.shapes) {
       const bool first = shape.body != last;
-      if (first) id = space_.add(bodyOf(shape));
+      if (first) bodies_.push_back(space_.add(bodyOf(shape)));
       last = shape.body;
-      Shape<S> made = shapeOf(shape, id);
+      Shape<S> made = shapeOf(shape, bodies_.back());
       made.setFriction(sqrt(ratio<S>(6, 10)));
-      if (first && shape.type == "dynamic") made.setDensity(S(1));
+      if (first && shape.isDynamic()) made.setDensity(S(1));
       space_.add(made);
     }
   }
   void step() override { space_.step(ratio<S>(1, 60)); }
+  std::vector<Motion> motions() const override {
+    std::vector<Motion> all;
+    for (const BodyId id : bodies_) {
+      const Body<S>& body = space_.body(id);
+      const Vector<S> position = body.position();
+      const auto plain = [](S value) { return static_cast<double>(value); };
+      all.push_back({plain(position.x), plain(position.y), plain(body.angle()), plain(body.velocity().x),
+                     plain(body.velocity().y), plain(body.angularVelocity())});
+    }
+    return all;
+  }
 
  private:
   static Body<S> bodyOf(const SceneShape& shape) {
     Body<S> body = shape.type == "static"      ? Body<S>::fixedInPlace()
                    : shape.type == "kinematic" ? Body<S>::kinematic()
                                                : Body<S>();
-    body.setPosition({number<S>(shape.x), number<S>(shape.y)});
-    body.setAngle(number<S>(shape.angle));
-    body.setVelocity({number<S>(shape.vx), number<S>(shape.vy)});
-    body.setAngularVelocity(number<S>(shape.w));
+    body.setPosition({exactly<S>(shape.x), exactly<S>(shape.y)});
+    body.setAngle(exactly<S>(shape.angle));
+    body.setVelocity({exactly<S>(shape.vx), exactly<S>(shape.vy)});
+    body.setAngularVelocity(exactly<S>(shape.w));
     return body;
   }
   static Shape<S> shapeOf(const SceneShape& shape, BodyId body) {
-    if (shape.shape == "circle") return circleShape<S>(body, number<S>(shape.radius), Vector<S>());
+    if (shape.isCircle()) return circleShape<S>(body, exactly<S>(shape.radius), Vector<S>());
     std::vector<Vector<S>> vertices;
     for (std::size_t i = 0; i < shape.vertices.size(); i += 2) {
-      vertices.push_back({number<S>(shape.vertices[i]), number<S>(shape.vertices[i + 1])});
+      vertices.push_back({exactly<S>(shape.vertices[i]), exactly<S>(shape.vertices[i + 1])});
     }
     return polyShapeRaw<S>(body, vertices, S(0));
   }
 
   Space<S> space_;
+  std::vector<BodyId> bodies_;
 };
 
 }  // namespace
 
-std::unique_ptr<World> makeDouble(const PeerScene& scene) {
-  return std::make_unique<SamestepWorld<double>>(scene);
+std::unique_ptr<World> makeDouble(const PeerScene& scene, SolverChoice solver) {
+  return std::make_unique<SamestepWorld<double>>(scene, solver);
 }
-std::unique_ptr<World> makeFixed(const PeerScene& scene) {
-  return std::make_unique<SamestepWorld<Fixed>>(scene);
+std::unique_ptr<World> makeFixed(const PeerScene& scene, SolverChoice solver) {
+  return std::make_unique<SamestepWorld<Fixed>>(scene, solver);
 }
 
 }  // namespace samestep::bench

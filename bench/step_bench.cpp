@@ -17,18 +17,14 @@ namespace {
 constexpr int kWarmUp = 30;
 constexpr int kTimed = 300;
 
-using Make = std::unique_ptr<World> (*)(const PeerScene&);
-struct Engine {
-  const char* name;
-  Make make;
-};
-constexpr Engine kEngines[] = {{"chipmunk", makeChipmunk}, {"double", makeDouble}, {"fixed", makeFixed}};
+constexpr const char* kEngines[] = {"chipmunk", "samestep-double-impulses10", "samestep-double-soft4",
+                                    "samestep-fixed-impulses10", "samestep-fixed-soft4"};
 constexpr const char* kScenes[] = {"pyramid40", "soup"};
 
-void run(benchmark::State& state, const PeerScene& scene, Make make) {
+void run(benchmark::State& state, const PeerScene& scene, const char* engine) {
   using Clock = std::chrono::steady_clock;
   for (auto _ : state) {
-    const std::unique_ptr<World> world = make(scene);
+    const std::unique_ptr<World> world = makeWorld(engine, scene);
     for (int i = 0; i < kWarmUp; ++i) world->step();
     const Clock::time_point start = Clock::now();
     for (int i = 0; i < kTimed; ++i) world->step();
@@ -49,12 +45,12 @@ class Ratios : public benchmark::ConsoleReporter {
     }
   }
   void Finalize() override {
-    std::printf("\n%-12s %-10s %12s %18s\n", "scene", "engine", "ms per step", "x Chipmunk");
+    std::printf("\n%-12s %-28s %12s %18s\n", "scene", "engine", "ms per step", "x Chipmunk");
     for (const char* scene : kScenes) {
-      for (const Engine& engine : kEngines) {
-        const double own = median(std::string(scene) + "/" + engine.name);
+      for (const char* engine : kEngines) {
+        const double own = median(std::string(scene) + "/" + engine);
         const double reference = median(std::string(scene) + "/chipmunk");
-        std::printf("%-12s %-10s %12.3f %18.2f\n", scene, engine.name, own, own / reference);
+        std::printf("%-12s %-28s %12.3f %18.2f\n", scene, engine, own, own / reference);
       }
     }
   }
@@ -76,12 +72,10 @@ int main(int argc, char** argv) {
   using namespace samestep::bench;
   benchmark::Initialize(&argc, argv);
   static std::map<std::string, PeerScene> scenes;
-  for (const char* name : kScenes)
-    scenes[name] = readScene(std::string(SAMESTEP_BENCH_SCENES "/") + name + ".csv");
+  for (const char* name : kScenes) scenes[name] = readScene(SAMESTEP_PEER_SCENES, name);
   for (const char* name : kScenes) {
-    for (const Engine& engine : kEngines) {
-      benchmark::RegisterBenchmark((std::string(name) + "/" + engine.name).c_str(), run, scenes[name],
-                                   engine.make)
+    for (const char* engine : kEngines) {
+      benchmark::RegisterBenchmark((std::string(name) + "/" + engine).c_str(), run, scenes[name], engine)
           ->UseManualTime()
           ->Iterations(1)
           ->Repetitions(7)

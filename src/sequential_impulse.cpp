@@ -29,8 +29,9 @@ template <Scalar S>
 void ImpulseSolver<S>::warmStart(const ImpulseRow<S>& row, S dtCoefficient) {
   ImpulseBody<S>& a = bodies[row.bodyA];
   ImpulseBody<S>& b = bodies[row.bodyB];
-  answer(row, row.normalSum * dtCoefficient, row.tangentSum * dtCoefficient, a.velocity, a.angularVelocity,
-         b.velocity, b.angularVelocity);
+  const S normal = min(row.normalSum * dtCoefficient, kMaxSum<S>);
+  const S tangent = clamp(row.tangentSum * dtCoefficient, -kMaxSum<S>, kMaxSum<S>);
+  answer(row, normal, tangent, a.velocity, a.angularVelocity, b.velocity, b.angularVelocity);
 }
 
 template <Scalar S>

@@ -21,17 +21,19 @@ NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) 
   const Plane<S>* planes = shape.planes;
   NearestEdge<S> found;
   found.distance = dot(planes[0].n, point - planes[0].v0);
-  for (int i = 1; i < shape.count; ++i) {
-    const S distance = dot(planes[i].n, point - planes[i].v0);
-    if (distance > found.distance) {
-      found.distance = distance;
-      found.edge = i;
-    }
-  }
   if (shape.type == ShapeType::segment) {
+    // Both sides measured from the same end, so that mirror images agree to the last bit.
+    found.edge = found.distance < S(0) ? 1 : 0;
     found.distance = abs(found.distance);
-  } else if (found.distance <= S(0)) {
-    return found;
+  } else {
+    for (int i = 1; i < shape.count; ++i) {
+      const S distance = dot(planes[i].n, point - planes[i].v0);
+      if (distance > found.distance) {
+        found.distance = distance;
+        found.edge = i;
+      }
+    }
+    if (found.distance <= S(0)) return found;
   }
 
   const int previous = (found.edge == 0 ? shape.count : found.edge) - 1;

@@ -157,7 +157,7 @@ class WorldReader {
     const std::uint64_t start = bytes_.offset();
     const auto count = read_.next<std::uint64_t>();
     if (count > most || count > bytes_.remaining()) failFormat(start, tooMany);
-    for (std::uint64_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       const std::uint64_t at = bytes_.offset();
       items.emplace_back();
       read_.get(items.back());

@@ -454,7 +454,7 @@ void Space<S>::softPreStep(S dt) {
   }
 
   soft.substep = dt / S(settings.substeps);
-  soft.perSubstep = min(reciprocal(soft.substep), S(1 << 14));
+  soft.perSubstep = reciprocal(max(soft.substep, ratio<S>(1, 1 << 14)));
   soft.pushSpeed = settings.contactPushSpeed;
   soft.kept = damping() == S(1) ? S(1) : pow(damping(), soft.substep);
   const S hertz = min(settings.contactHertz, soft.perSubstep * ratio<S>(1, 4));

@@ -349,8 +349,8 @@ TYPED_TEST(ArbiterTest, GettersSaturateAtTheEndsOfTheRanges) {
   pair.solved = 1;
   pair.state = ArbiterState::normal;
   for (Contact<S>& contact : pair.contacts) {
-    contact.normalSpeed = S(1 << 20);
-    contact.tangentSpeed = S(1 << 20);
+    contact.normalTotal = S(1 << 20);
+    contact.tangentTotal = S(1 << 20);
   }
   Body<S> a(kMaxMass<S>, kMinMoment<S>);
   Body<S> b(kMaxMass<S>, kMinMoment<S>);

@@ -20,14 +20,14 @@ struct BB {
 
   /// @throws NegativeHalfDimensions
   /// MIS: BBNewForExtents
-  static constexpr BB forExtents(const Vector<S>& center, S halfWidth, S halfHeight) {
+  [[gnu::always_inline]] static constexpr BB forExtents(const Vector<S>& center, S halfWidth, S halfHeight) {
     require<Fault::NegativeHalfDimensions>(halfWidth >= S(0) && halfHeight >= S(0));
     return {center.x - halfWidth, center.y - halfHeight, center.x + halfWidth, center.y + halfHeight};
   }
 
   /// @throws NegativeRadius
   /// MIS: BBNewForCircle
-  static constexpr BB forCircle(const Vector<S>& center, S radius) {
+  [[gnu::always_inline]] static constexpr BB forCircle(const Vector<S>& center, S radius) {
     require<Fault::NegativeRadius>(radius >= S(0));
     return {center.x - radius, center.y - radius, center.x + radius, center.y + radius};
   }
@@ -74,19 +74,19 @@ template <Scalar S>
 
 /// MIS: BBCenter
 template <Scalar S>
-inline constexpr Vector<S> center(const BB<S>& box) {
+[[gnu::always_inline]] inline constexpr Vector<S> center(const BB<S>& box) {
   return lerp(Vector<S>(box.left, box.bottom), Vector<S>(box.right, box.top), ratio<S>(1, 2));
 }
 
 /// Square metres. In Fixed only below 2^31 m^2; the trees go by perimeter instead. MIS: BBArea
 template <Scalar S>
-inline constexpr S area(const BB<S>& box) {
+[[gnu::always_inline]] inline constexpr S area(const BB<S>& box) {
   return (box.right - box.left) * (box.top - box.bottom);
 }
 
 /// MIS: BBMergedArea
 template <Scalar S>
-inline constexpr S mergedArea(const BB<S>& a, const BB<S>& b) {
+[[gnu::always_inline]] inline constexpr S mergedArea(const BB<S>& a, const BB<S>& b) {
   return area(merge(a, b));
 }
 
@@ -98,14 +98,14 @@ template <Scalar S>
 
 /// The point of the box nearest to v. MIS: BBClampVect
 template <Scalar S>
-inline constexpr Vector<S> clampTo(const BB<S>& box, const Vector<S>& v) {
+[[gnu::always_inline]] inline constexpr Vector<S> clampTo(const BB<S>& box, const Vector<S>& v) {
   return {clamp(v.x, box.left, box.right), clamp(v.y, box.bottom, box.top)};
 }
 
 /// v moved by whole widths and heights into the box, as on a torus. An empty side leaves its coordinate at
 /// the lower edge. MIS: BBWrapVect
 template <Scalar S>
-inline constexpr Vector<S> wrapInto(const BB<S>& box, const Vector<S>& v) {
+[[gnu::always_inline]] inline constexpr Vector<S> wrapInto(const BB<S>& box, const Vector<S>& v) {
   const auto wrap = [](S value, S low, S high) {
     const S size = high - low;
     if (size <= S(0)) return low;
@@ -117,7 +117,7 @@ inline constexpr Vector<S> wrapInto(const BB<S>& box, const Vector<S>& v) {
 
 /// MIS: BBOffset
 template <Scalar S>
-inline constexpr BB<S> offset(const BB<S>& box, const Vector<S>& v) {
+[[gnu::always_inline]] inline constexpr BB<S> offset(const BB<S>& box, const Vector<S>& v) {
   return {box.left + v.x, box.bottom + v.y, box.right + v.x, box.top + v.y};
 }
 

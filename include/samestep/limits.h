@@ -66,13 +66,13 @@ inline constexpr Vector<S> heldWithin(const Vector<S>& v, S limit) {
 }
 /// The number a Scaled stands for, held within +-limit.
 template <Scalar S>
-inline constexpr S toScalarWithin(const Scaled<S>& x, S limit) {
+[[gnu::always_inline]] inline constexpr S toScalarWithin(const Scaled<S>& x, S limit) {
   const Scaled<S> most = toScaled(limit);
   return x > most ? limit : x < -most ? -limit : toScalar<S>(x);
 }
 /// The same, held at the end of S: for getters, which saturate.
 template <Scalar S>
-inline constexpr S saturated(const Scaled<S>& x) {
+[[gnu::always_inline]] inline constexpr S saturated(const Scaled<S>& x) {
   return toScalarWithin<S>(x, std::numeric_limits<S>::max());
 }
 

@@ -41,7 +41,7 @@ concept Scalar = ScalarTraits<S>::kSupported;
 
 /// numerator / denominator, rounded to the nearest S.
 template <Scalar S>
-constexpr S ratio(int numerator, int denominator) {
+[[gnu::always_inline]] constexpr S ratio(int numerator, int denominator) {
   return S(numerator) / S(denominator);
 }
 

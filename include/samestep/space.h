@@ -32,6 +32,7 @@ enum class SolverKind : std::uint8_t {
 template <Scalar S>
 struct Settings {
   SolverKind solver = SolverKind::sequentialImpulses;
+  std::uint8_t unused[3] = {};
   /// Sequential impulses: how often all contacts are solved in a step, 1 to 1000.
   std::int32_t iterations = 10;
   /// Soft step: how many substeps a step has, 1 to 100.

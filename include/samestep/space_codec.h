@@ -17,12 +17,13 @@ struct WorldLimits {
   std::uint32_t handlers = 1u << 12;
 };
 
-/// Appends the canonical bytes of a world: little-endian, field by field, the same on every machine.
+/// Appends the canonical bytes of a world: little-endian, field by field, the same everywhere. They are
+/// what Space::hash hashes.
 template <Scalar S>
 void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes);
 
-/// Reads a world from `offset` on and moves it past. Whatever the bytes are, the world is one that a Space
-/// can have, fit for Space::adopt, or there is none; memory is taken for what has been read only.
+/// Reads a world from `offset` on and moves it past. Whatever the bytes are, the world is one a Space can
+/// have, fit for Space::adopt, or there is none; memory is taken for what has been read only.
 /// @throws FormatError
 template <Scalar S>
 WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset,

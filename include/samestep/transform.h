@@ -23,17 +23,23 @@ struct Transform {
       : a(aIn), b(bIn), c(cIn), d(dIn), tx(txIn), ty(tyIn) {}
 
   /// From the same numbers written row by row. MIS: transformNewTranspose
-  static constexpr Transform fromRows(S a, S c, S tx, S b, S d, S ty) { return {a, b, c, d, tx, ty}; }
+  [[gnu::always_inline]] static constexpr Transform fromRows(S a, S c, S tx, S b, S d, S ty) {
+    return {a, b, c, d, tx, ty};
+  }
   /// MIS: transformTranslate
-  static constexpr Transform translation(const Vector<S>& v) { return {S(1), S(0), S(0), S(1), v.x, v.y}; }
+  [[gnu::always_inline]] static constexpr Transform translation(const Vector<S>& v) {
+    return {S(1), S(0), S(0), S(1), v.x, v.y};
+  }
   /// MIS: transformScale
-  static constexpr Transform scaling(S x, S y) { return {x, S(0), S(0), y, S(0), S(0)}; }
+  [[gnu::always_inline]] static constexpr Transform scaling(S x, S y) {
+    return {x, S(0), S(0), y, S(0), S(0)};
+  }
   /// Turns by `angle` radians. MIS: transformRotate
   static Transform rotation(S angle) { return rigid(Vector<S>(), angle); }
   /// Turns by `angle` radians, then moves by v. MIS: transformRigid
   static Transform rigid(const Vector<S>& v, S angle) { return rigid(v, forAngle(angle)); }
   /// Turns by the unit vector `rotation`, then moves by v.
-  static constexpr Transform rigid(const Vector<S>& v, const Vector<S>& rotation) {
+  [[gnu::always_inline]] static constexpr Transform rigid(const Vector<S>& v, const Vector<S>& rotation) {
     return {rotation.x, rotation.y, -rotation.y, rotation.x, v.x, v.y};
   }
 
@@ -54,7 +60,8 @@ template <Scalar S>
 
 /// First `inner`, then `outer`. MIS: transformMult
 template <Scalar S>
-inline constexpr Transform<S> operator*(const Transform<S>& outer, const Transform<S>& inner) {
+[[gnu::always_inline]] inline constexpr Transform<S> operator*(const Transform<S>& outer,
+                                                               const Transform<S>& inner) {
   const Vector<S> x = transformVect(outer, Vector<S>(inner.a, inner.b));
   const Vector<S> y = transformVect(outer, Vector<S>(inner.c, inner.d));
   const Vector<S> t = transformPoint(outer, Vector<S>(inner.tx, inner.ty));
@@ -63,7 +70,7 @@ inline constexpr Transform<S> operator*(const Transform<S>& outer, const Transfo
 
 /// The inverse of any map whose determinant is not zero; Fixed: of one near 1. MIS: transformInverse
 template <Scalar S>
-inline constexpr Transform<S> inverse(const Transform<S>& t) {
+[[gnu::always_inline]] inline constexpr Transform<S> inverse(const Transform<S>& t) {
   const S inv = reciprocal(cross(t.a, t.d, t.c, t.b));
   return {t.d * inv,
           -(t.b * inv),
@@ -75,13 +82,13 @@ inline constexpr Transform<S> inverse(const Transform<S>& t) {
 
 /// The inverse of a rotation and translation. MIS: transformRigidInverse
 template <Scalar S>
-inline constexpr Transform<S> rigidInverse(const Transform<S>& t) {
+[[gnu::always_inline]] inline constexpr Transform<S> rigidInverse(const Transform<S>& t) {
   return {t.d, -t.b, -t.c, t.a, cross(t.c, t.ty, t.tx, t.d), cross(t.tx, t.b, t.a, t.ty)};
 }
 
 /// The smallest box around the image of a box. MIS: transformBB
 template <Scalar S>
-inline constexpr BB<S> transformBB(const Transform<S>& t, const BB<S>& box) {
+[[gnu::always_inline]] inline constexpr BB<S> transformBB(const Transform<S>& t, const BB<S>& box) {
   const S half = ratio<S>(1, 2);
   const S hw = (box.right - box.left) * half;
   const S hh = (box.top - box.bottom) * half;

@@ -36,9 +36,9 @@ struct Vector {
   }
   [[gnu::always_inline]] friend constexpr Vector operator*(S s, const Vector& v) { return v * s; }
 
-  constexpr Vector& operator+=(const Vector& v) { return *this = *this + v; }
-  constexpr Vector& operator-=(const Vector& v) { return *this = *this - v; }
-  constexpr Vector& operator*=(S s) { return *this = *this * s; }
+  [[gnu::always_inline]] constexpr Vector& operator+=(const Vector& v) { return *this = *this + v; }
+  [[gnu::always_inline]] constexpr Vector& operator-=(const Vector& v) { return *this = *this - v; }
+  [[gnu::always_inline]] constexpr Vector& operator*=(S s) { return *this = *this * s; }
 };
 
 /// MIS: vectDot
@@ -101,39 +101,39 @@ template <Scalar S>
 
 /// MIS: vectLength
 template <Scalar S>
-inline constexpr S length(const Vector<S>& v) {
+[[gnu::always_inline]] inline constexpr S length(const Vector<S>& v) {
   return length(v.x, v.y);
 }
 
 /// The unit vector along v; the zero vector stays zero. MIS: vectNormalize
 template <Scalar S>
-inline constexpr Vector<S> normalize(const Vector<S>& v) {
+[[gnu::always_inline]] inline constexpr Vector<S> normalize(const Vector<S>& v) {
   return Vector<S>(normalize(v.x, v.y));
 }
 
 /// The component of v along `onto`; zero where `onto` is zero. MIS: vectProject
 template <Scalar S>
-inline constexpr Vector<S> project(const Vector<S>& v, const Vector<S>& onto) {
+[[gnu::always_inline]] inline constexpr Vector<S> project(const Vector<S>& v, const Vector<S>& onto) {
   const Vector<S> direction = normalize(onto);
   return direction * dot(v, direction);
 }
 
 /// The unit vector at `angle` radians from the x axis. MIS: vectForAngle
 template <Scalar S>
-inline Vector<S> forAngle(S angle) {
+[[gnu::always_inline]] inline Vector<S> forAngle(S angle) {
   const SinCos<S> sc = sincos(angle);
   return {sc.cos, sc.sin};
 }
 
 /// The angle of v from the x axis, in (-pi, pi]; 0 for the zero vector. MIS: vectToAngle
 template <Scalar S>
-inline S toAngle(const Vector<S>& v) {
+[[gnu::always_inline]] inline S toAngle(const Vector<S>& v) {
   return atan2(v.y, v.x);
 }
 
 /// v, shortened to `limit` metres if it is longer. MIS: vectClamp
 template <Scalar S>
-inline constexpr Vector<S> clampLength(const Vector<S>& v, S limit) {
+[[gnu::always_inline]] inline constexpr Vector<S> clampLength(const Vector<S>& v, S limit) {
   return length(v) > limit ? normalize(v) * limit : v;
 }
 
@@ -145,19 +145,19 @@ template <Scalar S>
 
 /// Square metres; see lengthSq. MIS: vectDistSq
 template <Scalar S>
-inline constexpr S distanceSq(const Vector<S>& a, const Vector<S>& b) {
+[[gnu::always_inline]] inline constexpr S distanceSq(const Vector<S>& a, const Vector<S>& b) {
   return lengthSq(a - b);
 }
 
 /// MIS: vectDist
 template <Scalar S>
-inline constexpr S distance(const Vector<S>& a, const Vector<S>& b) {
+[[gnu::always_inline]] inline constexpr S distance(const Vector<S>& a, const Vector<S>& b) {
   return length(a - b);
 }
 
 /// Whether a and b are less than `limit` metres apart, decided exactly. MIS: vectNear
 template <Scalar S>
-inline constexpr bool near(const Vector<S>& a, const Vector<S>& b, S limit) {
+[[gnu::always_inline]] inline constexpr bool near(const Vector<S>& a, const Vector<S>& b, S limit) {
   const Vector<S> d = a - b;
   return exactDot(d, d) < exactProduct(limit, limit);
 }

@@ -9,15 +9,15 @@
 /// The algebra on raw bits, once for every way. Rounding is to nearest, ties to even, everywhere.
 namespace samestep::raw {
 
-/// |x| as an unsigned number, also of the lowest.
-constexpr std::uint64_t magnitude(std::int64_t x) {
-  return x < 0 ? 0 - static_cast<std::uint64_t>(x) : static_cast<std::uint64_t>(x);
-}
-
 /// x or -x without a branch.
 constexpr std::int64_t negatedIf(bool negate, std::uint64_t x) {
   const std::uint64_t mask = 0 - static_cast<std::uint64_t>(negate);
   return static_cast<std::int64_t>((x ^ mask) - mask);
+}
+
+/// |x| as an unsigned number, also of the lowest.
+constexpr std::uint64_t magnitude(std::int64_t x) {
+  return static_cast<std::uint64_t>(negatedIf(x < 0, static_cast<std::uint64_t>(x)));
 }
 
 struct FromDouble {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "samestep/fixed_tables.h"
@@ -67,20 +68,21 @@ constexpr std::int64_t atan2(std::int64_t y, std::int64_t x) {
   if ((x | y) == 0) return 0;
   const std::uint64_t xSize = magnitude(x), ySize = magnitude(y);
   const bool steep = ySize > xSize;
-  const std::uint64_t large = steep ? ySize : xSize;
-  const std::uint64_t small = steep ? xSize : ySize;
+  // Written as maximum and minimum, which compilers make without a branch.
+  const std::uint64_t large = xSize < ySize ? ySize : xSize;
+  const std::uint64_t small = xSize < ySize ? xSize : ySize;
   // The larger one gets its top bit at 59; at most three bits of the smaller are lost.
   const int zeros = std::countl_zero(large);
   const std::uint64_t d = large << zeros >> 4;
   const std::uint64_t n = small << zeros >> 4;
-  // Measured from atan(0), atan(1/2) or atan(1), so that the tangent t of the rest is at most 0.238, Q64.
+  // Measured from atan(0), atan(1/2) or atan(1), so that the tangent t of the rest is at most 0.238, Q48.
   const std::uint64_t base = (n > (d >> 2) - (d >> 6) ? 1u : 0u) + (n > d - (d >> 2) ? 1u : 0u);
   const std::uint64_t top = 2 * n - base * d;
   const bool below = top >> 63 != 0;
   const std::uint64_t t =
       Way::Divide::fraction48(static_cast<std::uint64_t>(negatedIf(below, top)), 2 * d + base * n);
-  const std::uint64_t shortT = (t + (1 << 13)) >> 14;  // Q34, below 2^32
-  const std::uint64_t z = shortT * shortT >> 32;       // Q36, below 2^32
+  const std::uint64_t shortT = t >> 14;           // Q34, below 2^32
+  const std::uint64_t z = shortT * shortT >> 32;  // Q36, below 2^32
   const auto signedZ = static_cast<std::int64_t>(z);
   // Two halves of the sum side by side, for they are waited for.
   const std::int64_t lower = kArcTerms[1] + (kArcTerms[2] * signedZ >> 36);
@@ -92,7 +94,7 @@ constexpr std::int64_t atan2(std::int64_t y, std::int64_t x) {
   const std::uint64_t part = (t << 14) - ((cube >> 32) * factor >> 8);  // Q62
   // Mirrored at the diagonal where steep, and at the y axis where x < 0. Q62.
   const bool left = x < 0;
-  const std::uint64_t from = kArcBase[base + (steep ? 3u : 0u) + (left ? 6u : 0u)];
+  const std::uint64_t from = kArcBase[static_cast<std::size_t>(base) + (steep ? 3u : 0u) + (left ? 6u : 0u)];
   const std::uint64_t angle = from + static_cast<std::uint64_t>(negatedIf((below != steep) != left, part));
   return negatedIf(y < 0, (angle + (std::uint64_t{1} << 29)) >> 30);
 }
@@ -145,13 +147,13 @@ constexpr Quotient exp(std::int64_t x) {
 struct Normalized {
   std::uint64_t mantissa;
   std::int64_t exponent;
-  std::uint64_t interval;
+  std::size_t interval;
 };
 
 constexpr Normalized normalized(std::int64_t x) {
   const int zeros = std::countl_zero(static_cast<std::uint64_t>(x));
   const std::uint64_t mantissa = static_cast<std::uint64_t>(x) << zeros;
-  return {mantissa, 31 - zeros, mantissa >> 57 & 63};
+  return {mantissa, 31 - zeros, static_cast<std::size_t>(mantissa >> 57 & 63)};
 }
 
 template <class Way>

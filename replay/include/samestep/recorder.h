@@ -14,9 +14,9 @@ using ByteSink = void (*)(std::span<const std::uint8_t> bytes, void* data);
 
 /// Records a match: what is done to a Space from now on, and the hash of its world after each step.
 ///
-/// All that changes the world between steps must go through apply(), so that it is in the recording;
-/// functions registered with the Space, and what they do during a step, are not recorded but must be
-/// registered again for the replay. A recording that was not finished is refused as cut short.
+/// All that changes the world between steps must go through apply(), so that it is recorded; functions
+/// registered with the Space, and what they do during a step, are not recorded but must be registered again
+/// for the replay. A recording that was not finished is refused as cut short.
 ///
 ///     std::vector<std::uint8_t> bytes;
 ///     Recorder<Fixed> recorder(space, ratio<Fixed>(1, 60), bytes);

@@ -17,8 +17,8 @@ struct FieldDifference {
   std::string b;
 };
 
-/// The fields in which two worlds differ, at most `most`, in the order of the canonical encoding: settings
-/// and clock, bodies, shapes, pairs, handlers, each by rising id.
+/// The fields in which two worlds differ, at most `most`, in canonical order: settings and
+/// clock, bodies, shapes, pairs, handlers, each by rising id.
 template <Scalar S>
 std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldState<S>& b,
                                          std::uint32_t most = 0xffffffffu);

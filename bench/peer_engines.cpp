@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include <charconv>
+
+#include "peer_worlds.h"
+
+namespace samestep::bench {
+namespace {
+
+/// The number after a prefix, or 0 if `text` is not the prefix and a number up to 100.
+int countAfter(const std::string& text, const std::string& prefix) {
+  if (!text.starts_with(prefix)) return 0;
+  int count = 0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data() + prefix.size(), end, count);
+  return read.ec == std::errc() && read.ptr == end && count <= 100 ? count : 0;
+}
+
+std::unique_ptr<World> makeSamestep(const std::string& engine, const PeerScene& scene, const char* prefix,
+                                    std::unique_ptr<World> (*make)(const PeerScene&, SolverChoice)) {
+  for (const bool soft : {false, true}) {
+    const int count = countAfter(engine, std::string(prefix) + (soft ? "soft" : "impulses"));
+    if (count > 0) return make(scene, {soft, count});
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene) {
+  if (engine == "chipmunk") return makeChipmunk(scene, 10);
+  if (const int iterations = countAfter(engine, "chipmunk"); iterations > 0) {
+    return makeChipmunk(scene, iterations);
+  }
+  if (engine == "box2d24") return makeBox2d(scene);
+  if (auto world = makeSamestep(engine, scene, "samestep-double-", makeDouble)) return world;
+  return makeSamestep(engine, scene, "samestep-fixed-", makeFixed);
+}
+
+}  // namespace samestep::bench

@@ -1,0 +1,15 @@
+# Records a scene with PROGRAM and lets CLIENT replay it: each hash must be the recorded one.
+file(MAKE_DIRECTORY ${WORK})
+foreach(scalar fixed double)
+  set(recording ${WORK}/arena.${scalar})
+  execute_process(COMMAND ${PROGRAM} record arena -o ${recording} --scalar ${scalar} --ticks 300
+    OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CLIENT} --recorded ${recording} OUTPUT_VARIABLE recorded COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CLIENT} ${recording} OUTPUT_VARIABLE computed COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT recorded MATCHES "arena.${scalar} 300 ")
+    message(FATAL_ERROR "the client did not replay 300 ticks:\n${recorded}")
+  endif()
+  if(NOT computed STREQUAL recorded)
+    message(FATAL_ERROR "in ${scalar} the client's flags change the hashes")
+  endif()
+endforeach()

@@ -1,0 +1,15 @@
+# samestep_add_hostile_client(NAME FLAGS): the runner as a client that takes none of the library's flags. Its
+# objects stand first in the link, so that whatever they define takes the place of the library's own.
+function(samestep_add_hostile_client name flags)
+  set(folder ${CMAKE_CURRENT_FUNCTION_LIST_DIR})
+  add_library(${name}_objects OBJECT ${folder}/hostile.cpp ${folder}/runner.cpp)
+  separate_arguments(flags NATIVE_COMMAND "-std=c++20 ${flags}")
+  target_compile_options(${name}_objects PRIVATE ${flags})
+  foreach(library samestep_recording samestep samestep_fixed)
+    target_include_directories(${name}_objects PRIVATE $<TARGET_PROPERTY:${library},INTERFACE_INCLUDE_DIRECTORIES>)
+    target_compile_definitions(${name}_objects PRIVATE $<TARGET_PROPERTY:${library},INTERFACE_COMPILE_DEFINITIONS>)
+  endforeach()
+  add_executable(${name} $<TARGET_OBJECTS:${name}_objects>)
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
+  target_link_libraries(${name} PRIVATE samestep_recording)
+endfunction()
