@@ -47,13 +47,32 @@ void SceneBuilder<S>::buildFile() {
 template <Scalar S>
 void SceneBuilder<S>::readSettings(const Cursor& at) {
   Space<S>& space = scene_.space_;
-  at.allow({"gravity", "iterations", "damping", "collisionSlop", "collisionBias", "collisionPersistence",
-            "worldExtent"});
+  at.allow({"solver", "gravity", "iterations", "substeps", "damping", "collisionSlop", "collisionBias",
+            "collisionPersistence", "contactHertz", "contactDamping", "contactPushSpeed", "contactMargin",
+            "bounceThreshold", "worldExtent"});
   const auto read = [&](const char* key, auto&& set) {
     if (!at.has(key)) return;
     const Cursor value = at.at(key);
     value.guard([&] { set(value); });
   };
+  read("solver", [&](const Cursor& v) {
+    const std::string& solver = v.text();
+    if (solver == "soft step") {
+      space.setSolver(SolverKind::softStep);
+    } else if (solver != "sequential impulses") {
+      v.fail("\"sequential impulses\" or \"soft step\" is wanted here");
+    }
+  });
+  read("substeps", [&](const Cursor& v) { space.setSubsteps(static_cast<int>(v.integer(0, 1u << 30))); });
+  read("contactHertz", [&](const Cursor& v) {
+    space.setContactSoftness(v.template number<S>(), space.settings().contactDamping);
+  });
+  read("contactDamping", [&](const Cursor& v) {
+    space.setContactSoftness(space.settings().contactHertz, v.template number<S>());
+  });
+  read("contactPushSpeed", [&](const Cursor& v) { space.setContactPushSpeed(v.template number<S>()); });
+  read("contactMargin", [&](const Cursor& v) { space.setContactMargin(v.template number<S>()); });
+  read("bounceThreshold", [&](const Cursor& v) { space.setBounceThreshold(v.template number<S>()); });
   read("gravity", [&](const Cursor& v) { space.setGravity(v.template vector<S>()); });
   read("iterations", [&](const Cursor& v) { space.setIterations(static_cast<int>(v.integer(0, 1u << 30))); });
   read("damping", [&](const Cursor& v) { space.setDamping(v.template number<S>()); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -74,35 +75,52 @@ class CanonicalWriter {
   template <unsigned kSize>
   void store(std::uint64_t value) {
     std::uint8_t* to = sink_.reserve(kSize);
-    for (unsigned i = 0; i < kSize; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
+    if constexpr (std::endian::native == std::endian::little) {
+      // The same bytes; compilers do not always see that the loop is one store.
+      std::memcpy(to, &value, kSize);
+    } else {
+      for (unsigned i = 0; i < kSize; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
+    }
   }
 
   Sink& sink_;
 };
 
-/// Writes a whole world: settings, clock, bodies, shapes, pairs, handlers; each list with its length.
-template <class Sink, class World>
-void writeWorld(Sink& sink, const World& world) {
-  CanonicalWriter<Sink> write(sink);
+// Parts of a world. `Records` has put(record) for anything that a CanonicalWriter can put.
+
+template <class Records, class World>
+void writeFrame(Records& write, const World& world) {
   write.put(world.settings);
   write.put(world.stamp);
   write.put(world.timeStep);
   write.put(world.staticBody);
-  const auto slots = [&](const auto& map) {
-    write.put(map.slots());
-    for (std::uint32_t i = 0; i < map.slots(); ++i) {
-      write.put(map.generationAt(i));
-      if (map.aliveAt(i)) write.put(map.valueAt(i));
-    }
-    write.put(static_cast<std::uint32_t>(map.freeList().size()));
-    for (const std::uint32_t index : map.freeList()) write.put(index);
-  };
-  slots(world.bodies);
-  slots(world.shapes);
-  write.put(static_cast<std::uint64_t>(world.pairs.size()));
-  for (const auto& pair : world.pairs) write.put(pair);
-  write.put(static_cast<std::uint64_t>(world.handlers.size()));
-  for (const auto& binding : world.handlers) write.put(binding);
+}
+
+template <class Records, class Map>
+void writeSlots(Records& write, const Map& map) {
+  write.put(map.slots());
+  for (std::uint32_t i = 0; i < map.slots(); ++i) {
+    write.put(map.generationAt(i));
+    if (map.aliveAt(i)) write.put(map.valueAt(i));
+  }
+  write.put(static_cast<std::uint32_t>(map.freeList().size()));
+  for (const std::uint32_t index : map.freeList()) write.put(index);
+}
+
+template <class Records, class List>
+void writeList(Records& write, const List& list) {
+  write.put(static_cast<std::uint64_t>(list.size()));
+  for (const auto& record : list) write.put(record);
+}
+
+/// A whole world: settings, clock, bodies, shapes, pairs, handlers; each list with its length.
+template <class Records, class World>
+void writeWorld(Records& write, const World& world) {
+  writeFrame(write, world);
+  writeSlots(write, world.bodies);
+  writeSlots(write, world.shapes);
+  writeList(write, world.pairs);
+  writeList(write, world.handlers);
 }
 
 }  // namespace samestep

@@ -340,6 +340,7 @@ ShapeId Space<S>::add(const Shape<S>& shape) {
     state_.bodies.valueAt(bodyId.index).setMassProperties(mass);
   }
 
+  impl_->shapesHashKnown = false;
   const ShapeId id = state_.shapes.insert(shape);
   Shape<S>& kept = state_.shapes.valueAt(id.index);
   kept.attach(id, impl_->serial);
@@ -373,6 +374,7 @@ void Space<S>::eraseShape(ShapeId id) {
   if (holder.isDynamic() && hadMass) holder.setMassProperties(massOfShapes(bodyId, id, nullptr));
   impl_->dropBox(id.index);
   impl_->unlinkShape(bodyId.index, id.index);
+  impl_->shapesHashKnown = false;
   state_.shapes.erase(id);
   impl_->touch(bodyId.index);
 }
@@ -401,6 +403,7 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
     if (holder.isDynamic() && !sameMass) holder.setMassProperties(massOfShapes(kept.body(), id, &next));
   }
 
+  impl_->shapesHashKnown = false;
   kept = next;
   if (!sameGeometry) {
     impl_->prepareShape(id.index, kept);
@@ -589,6 +592,7 @@ void Space<S>::adopt(const WorldState<S>& state) {
     body.id_ = id;
     body.owner_ = impl_->serial;
   });
+  impl_->shapesHashKnown = false;
   state_.shapes.each([&](ShapeId id, Shape<S>& shape) { shape.attach(id, impl_->serial); });
   rangeEvents_.clear();
   dropCache();
@@ -613,9 +617,11 @@ void Space<S>::dropCache() {
 
 template <Scalar S>
 std::uint64_t Space<S>::hash() const {
-  HashSink sink;
-  writeWorld(sink, state_);
-  return sink.finish();
+  if (!impl_->shapesHashKnown) {
+    impl_->shapesHash = hashOfShapes(state_.shapes);
+    impl_->shapesHashKnown = true;
+  }
+  return hashOfWorld(state_, impl_->shapesHash);
 }
 
 template <Scalar S>

@@ -15,11 +15,17 @@ namespace {
 template <Scalar S>
 const char* flawOf(const Settings<S>& settings) {
   const auto in = [](S value, S low, S high) { return value >= low && value <= high; };
-  const bool good = settings.iterations >= 1 && settings.iterations <= 1000 &&
+  const bool both = settings.solver <= SolverKind::softStep &&
                     within(settings.gravity, kMaxAcceleration<S>) && in(settings.damping, S(0), S(1)) &&
-                    in(settings.collisionSlop, S(0), S(256)) && in(settings.collisionBias, S(0), S(1)) &&
                     settings.worldExtent > S(0) && settings.worldExtent <= kMaxWorldExtent<S>;
-  return good ? nullptr : "a setting is out of range";
+  const bool sequential = settings.iterations >= 1 && settings.iterations <= 1000 &&
+                          in(settings.collisionSlop, S(0), S(256)) && in(settings.collisionBias, S(0), S(1));
+  const bool soft =
+      settings.substeps >= 1 && settings.substeps <= 100 && in(settings.contactHertz, S(0), S(1000)) &&
+      in(settings.contactDamping, S(0), S(100)) &&
+      in(settings.contactPushSpeed, S(0), kMaxSpeed<S>)&&in(settings.contactMargin, S(0), S(1)) &&
+      in(settings.bounceThreshold, S(0), kMaxSpeed<S>);
+  return both && sequential && soft ? nullptr : "a setting is out of range";
 }
 
 template <Scalar S>
@@ -171,7 +177,8 @@ class WorldReader {
 template <Scalar S>
 void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes) {
   BytesSink sink(bytes);
-  writeWorld(sink, world);
+  CanonicalWriter<BytesSink> write(sink);
+  writeWorld(write, world);
 }
 
 template <Scalar S>

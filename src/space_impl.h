@@ -59,6 +59,9 @@ struct Space<S>::Impl {
 
   // Cache: can be computed again from the state at any time, by body or shape slot.
   bool cached = false;
+  // Of all shapes, until one is added, changed or removed.
+  bool shapesHashKnown = false;
+  std::uint64_t shapesHash = 0;
   std::vector<PlacedPose<S>> poses;
   std::vector<std::uint32_t> firstShape;
   std::vector<std::uint32_t> lastShape;

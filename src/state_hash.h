@@ -10,16 +10,21 @@
 
 namespace samestep {
 
-/// A sink of CanonicalWriter that hashes: XXH3-64, the same value on every machine.
+/// Hashes records: XXH3-64 of their canonical bytes, the same value on every machine.
 class HashSink {
  public:
   HashSink() { XXH3_64bits_reset(&state_); }
 
-  std::uint8_t* reserve(unsigned size) {
-    if (used_ + size > kChunk) flush();
-    std::uint8_t* room = chunk_ + used_;
-    used_ += size;
-    return room;
+  template <class T>
+  [[gnu::flatten]] void put(const T& record) {
+    // No field is visited twice, so the canonical bytes are no more than the record's own. They are written
+    // through a pointer that stays in a register.
+    static_assert(sizeof(T) <= kChunk);
+    if (kChunk - used_ < sizeof(T)) flush();
+    Pointer pointer{chunk_ + used_};
+    CanonicalWriter<Pointer> write(pointer);
+    write.put(record);
+    used_ = static_cast<unsigned>(pointer.to - chunk_);
   }
   std::uint64_t finish() {
     flush();
@@ -27,6 +32,14 @@ class HashSink {
   }
 
  private:
+  struct Pointer {
+    std::uint8_t* to;
+    std::uint8_t* reserve(unsigned size) {
+      std::uint8_t* room = to;
+      to += size;
+      return room;
+    }
+  };
   static constexpr unsigned kChunk = 8192;
 
   void flush() {
@@ -43,8 +56,27 @@ class HashSink {
 template <class T>
 std::uint64_t hashOf(const T& record) {
   HashSink sink;
-  CanonicalWriter<HashSink> write(sink);
-  write.put(record);
+  sink.put(record);
+  return sink.finish();
+}
+
+/// The hash of all shapes, which change seldom: a Space keeps it until they do.
+template <class Shapes>
+std::uint64_t hashOfShapes(const Shapes& shapes) {
+  HashSink sink;
+  writeSlots(sink, shapes);
+  return sink.finish();
+}
+
+/// The hash of a world whose shapes have that hash.
+template <class World>
+std::uint64_t hashOfWorld(const World& world, std::uint64_t shapesHash) {
+  HashSink sink;
+  writeFrame(sink, world);
+  writeSlots(sink, world.bodies);
+  sink.put(shapesHash);
+  writeList(sink, world.pairs);
+  writeList(sink, world.handlers);
   return sink.finish();
 }
 

@@ -49,8 +49,9 @@ const Body<S>& onlyBody(const Scene<S>& scene) {
 
 TYPED_TEST(SceneTest, NumbersAreReadExactlyFromTheirText) {
   const Scene<TypeParam> scene(SceneSource::fromText(
-      R"({"samestep": 1, "bodies": [{"mass": 2, "moment": 1, "position": [0.1, -1234.00000000023283064365386962890625],
-          "velocity": [1e2, -3], "angularVelocity": 0.30000000000000000001}]})",
+      R"({"samestep": 1, "bodies": [{"mass": 2, "moment": 1,
+          "position": [0.1, -1234.00000000023283064365386962890625], "velocity": [1e2, -3],
+          "angularVelocity": 0.30000000000000000001}]})",
       "test.json"));
 
   const Body<TypeParam>& body = onlyBody(scene);
@@ -62,9 +63,12 @@ TYPED_TEST(SceneTest, NumbersAreReadExactlyFromTheirText) {
 
 TYPED_TEST(SceneTest, SettingsTimeStepAndHandlersAreTaken) {
   const Scene<TypeParam> scene(SceneSource::fromText(
-      R"({"samestep": 1, "stepsPerSecond": 64, "settings": {"gravity": [1, -2], "iterations": 7, "damping": 0.5,
-          "collisionSlop": 0.25, "collisionBias": 0.125, "collisionPersistence": 9, "worldExtent": 100},
-          "handlers": [{"types": [1, 2], "do": "ignore"}, {"type": 3, "do": "count"}, {"all": true, "do": "slippery"}]})",
+      R"({"samestep": 1, "stepsPerSecond": 64,
+          "settings": {"gravity": [1, -2], "iterations": 7, "damping": 0.5,
+                       "collisionSlop": 0.25, "collisionBias": 0.125, "collisionPersistence": 9,
+                       "worldExtent": 100},
+          "handlers": [{"types": [1, 2], "do": "ignore"}, {"type": 3, "do": "count"},
+                       {"all": true, "do": "slippery"}]})",
       "test.json"));
 
   EXPECT_EQ(scene.timeStep(), TypeParam(1) / TypeParam(64));
@@ -77,6 +81,22 @@ TYPED_TEST(SceneTest, SettingsTimeStepAndHandlersAreTaken) {
   EXPECT_EQ(settings.collisionPersistence, 9u);
   EXPECT_EQ(settings.worldExtent, TypeParam(100));
   EXPECT_EQ(scene.space().state().handlers.size(), 3u);
+}
+
+TYPED_TEST(SceneTest, TheSoftStepHasSettingsOfItsOwn) {
+  const Scene<TypeParam> scene(SceneSource::fromText(
+      R"({"samestep": 1, "settings": {"solver": "soft step", "substeps": 6, "contactHertz": 20,
+          "contactDamping": 5, "contactPushSpeed": 2, "contactMargin": 0.5, "bounceThreshold": 0.25}})",
+      "test.json"));
+
+  const Settings<TypeParam>& settings = scene.space().settings();
+  EXPECT_EQ(settings.solver, SolverKind::softStep);
+  EXPECT_EQ(settings.substeps, 6);
+  EXPECT_EQ(settings.contactHertz, TypeParam(20));
+  EXPECT_EQ(settings.contactDamping, TypeParam(5));
+  EXPECT_EQ(settings.contactPushSpeed, TypeParam(2));
+  EXPECT_EQ(settings.contactMargin, ratio<TypeParam>(1, 2));
+  EXPECT_EQ(settings.bounceThreshold, ratio<TypeParam>(1, 4));
 }
 
 TYPED_TEST(SceneTest, AGridMakesCopiesWithNumberedNames) {

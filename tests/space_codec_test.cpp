@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "state_hash.h"
 #include "support/scalars.h"
 #include "support/world.h"
 
@@ -60,6 +61,29 @@ TYPED_TEST(SpaceCodecTest, EveryWorldOfALivingSpaceIsWithoutFlaw) {
       ASSERT_EQ(flawOf(space.state()), nullptr) << "seed " << seed << ", step " << i;
     }
   }
+}
+
+// The hash of the shapes is kept from step to step.
+TYPED_TEST(SpaceCodecTest, TheHashFollowsEveryChangeOfAShape) {
+  using S = TypeParam;
+  Space<S> space;
+  fillAtRandom(space, 6);
+  const SavedSpace<S> start = space.save();
+  const auto expectFresh = [&] {
+    EXPECT_EQ(space.hash(), hashOfWorld(space.state(), hashOfShapes(space.state().shapes)));
+  };
+  const std::uint64_t before = space.hash();
+  const ShapeId disc = addDisc(space, {S(1), S(9)}, S(1), S(2));
+  expectFresh();
+  space.change(disc, [](Shape<S>& shape) { shape.setFriction(ratio<S>(1, 8)); });
+  expectFresh();
+  space.step(kTick<S>);
+  expectFresh();
+  space.remove(disc);
+  expectFresh();
+  space.restore(start);
+  expectFresh();
+  EXPECT_EQ(space.hash(), before);
 }
 
 TYPED_TEST(SpaceCodecTest, IsRefusedWhereverItIsCutShort) {

@@ -60,10 +60,9 @@ TEST(StateHashTest, FixedNumbersGoInAsTheirUnits) {
 TEST(StateHashTest, LongInputsAreHashedAsAWhole) {
   HashSink sink;
   std::vector<std::uint8_t> bytes;
-  CanonicalWriter<HashSink> write(sink);
   for (std::uint32_t i = 0; i < 5001; ++i) {
-    write.put(static_cast<std::uint8_t>(i));
-    write.put(std::uint64_t{i} << 40 | i);
+    sink.put(static_cast<std::uint8_t>(i));
+    sink.put(std::uint64_t{i} << 40 | i);
     bytes.push_back(static_cast<std::uint8_t>(i));
     for (int k = 0; k < 8; ++k)
       bytes.push_back(static_cast<std::uint8_t>((std::uint64_t{i} << 40 | i) >> (8 * k)));

@@ -472,7 +472,8 @@ class Space {
 
   // State.
 
-  /// XXH3-64 over the canonical little-endian encoding of the state.
+  /// XXH3-64 over the canonical little-endian encoding of the state, in which the shapes stand as the XXH3-64
+  /// of theirs. The same on every machine.
   std::uint64_t hash() const;
   std::uint64_t hash(BodyId id) const;
   std::uint64_t hash(ShapeId id) const;

@@ -17,8 +17,7 @@ struct WorldLimits {
   std::uint32_t handlers = 1u << 12;
 };
 
-/// Appends the canonical bytes of a world: little-endian, field by field, the same everywhere. They are
-/// what Space::hash hashes.
+/// Appends the canonical bytes of a world: little-endian, field by field, the same everywhere.
 template <Scalar S>
 void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes);
 
