@@ -147,13 +147,13 @@ constexpr Quotient exp(std::int64_t x) {
 struct Normalized {
   std::uint64_t mantissa;
   std::int64_t exponent;
-  std::size_t interval;
+  std::uint32_t interval;
 };
 
 constexpr Normalized normalized(std::int64_t x) {
   const int zeros = std::countl_zero(static_cast<std::uint64_t>(x));
   const std::uint64_t mantissa = static_cast<std::uint64_t>(x) << zeros;
-  return {mantissa, 31 - zeros, static_cast<std::size_t>(mantissa >> 57 & 63)};
+  return {mantissa, 31 - zeros, static_cast<std::uint32_t>(mantissa >> 57 & 63)};
 }
 
 template <class Way>
