@@ -21,6 +21,8 @@ long long statusBytes(const std::string& key) {
 }
 
 long long growthHere(const std::string& engine, const PeerScene& scene, int steps) {
+  // The allocator's threshold at its default, or it is what reading the scenes made of it.
+  mallopt(M_MMAP_THRESHOLD, 128 * 1024);
   // Memory freed before and kept by the allocator would hide what the world needs.
   malloc_trim(0);
   const long long before = statusBytes("VmRSS");
