@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
+#include <samestep/high_water.h>
 #include <samestep/scene.h>
 
 #include "program.h"
@@ -13,7 +14,14 @@ struct Options {
   std::string scalar = "fixed";
   std::uint64_t ticks = 0;
   std::uint64_t every = 1;
+  bool highWater = false;
 };
+
+void printHighWater() {
+  for (const HighWaterMark& mark : highWaterTable().marks()) {
+    std::printf("high water\t%.*s\t%.9g\n", static_cast<int>(mark.name.size()), mark.name.data(), mark.value());
+  }
+}
 
 template <Scalar S>
 int run(const Options& options) {
@@ -35,6 +43,7 @@ int run(const Options& options) {
     }
     progress.at(tick);
   }
+  if (options.highWater) printHighWater();
   return kGood;
 }
 
@@ -51,7 +60,12 @@ void addHash(CLI::App& app, int& result) {
   word->add_option("--every", options->every, "Print only every K-th tick")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str();
+  word->add_flag("--high-water", options->highWater,
+                 "With --scalar checked: print the largest value that each formula of the engine had");
   word->callback([options, &result] {
+    if (options->highWater && options->scalar != "checked") {
+      throw CLI::ValidationError("--high-water", "only checked numbers are recorded: add --scalar checked");
+    }
     result = withScalar(options->scalar, [&](auto scalar) { return run<decltype(scalar)>(*options); });
   });
 }
