@@ -2,6 +2,7 @@
 // The step, stage by stage.
 #include <algorithm>
 
+#include "push_contacts.h"
 #include "require_ieee.h"
 #include "space_impl.h"
 
@@ -251,20 +252,7 @@ template <Scalar S>
 bool Space<S>::applyCollision(Pair<S>& pair, const CollisionInfo<S>& info) {
   const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
   const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
-  Contact<S> contacts[kMaxContactsPerPair];
-  for (int i = 0; i < info.count; ++i) {
-    Contact<S>& contact = contacts[i];
-    contact.pointA = info.points[i].pointA;
-    contact.pointB = info.points[i].pointB;
-    contact.feature = info.points[i].hash;
-    for (int j = 0; j < pair.count; ++j) {
-      if (pair.contacts[j].feature != contact.feature) continue;
-      contact.normalSpeed = pair.contacts[j].normalSpeed;
-      contact.tangentSpeed = pair.contacts[j].tangentSpeed;
-    }
-  }
-  for (int i = 0; i < kMaxContactsPerPair; ++i) pair.contacts[i] = contacts[i];
-  pair.count = static_cast<std::uint8_t>(info.count);
+  pushContacts(pair, info);
   pair.normal = info.normal;
   pair.elasticity = min(shapeA.elasticity() * shapeB.elasticity(), S(kMaxMaterial));
   pair.friction = min(shapeA.friction() * shapeB.friction(), S(kMaxMaterial));

@@ -67,6 +67,28 @@ TYPED_TEST(BodyTest, NewBodyIsDynamicAtRestAtTheOrigin) {
   EXPECT_FALSE(body.id().valid());
 }
 
+TYPED_TEST(BodyTest, GettersReadBackWhatTheSettersWrote) {
+  using S = TypeParam;
+  Body<S> body(S(1), S(1));
+  body.setCenterOfMass({S(1), S(2)});
+  body.setPosition({S(3), S(-4)});
+  body.setVelocity({S(5), S(-6)});
+  body.setForce({S(7), S(-8)});
+  body.setAngle(S(9));
+  body.setAngularVelocity(S(-10));
+  body.setTorque(S(11));
+
+  EXPECT_EQ(body.centerOfMass(), Vector<S>(S(1), S(2)));
+  EXPECT_EQ(body.velocity(), Vector<S>(S(5), S(-6)));
+  EXPECT_EQ(body.force(), Vector<S>(S(7), S(-8)));
+  EXPECT_EQ(body.angle(), S(9));
+  EXPECT_EQ(body.rotation(), forAngle(S(9)));
+  EXPECT_EQ(body.angularVelocity(), S(-10));
+  EXPECT_EQ(body.torque(), S(11));
+  EXPECT_NEAR(double(body.position().x), 3, 1e-8);
+  EXPECT_NEAR(double(body.position().y), -4, 1e-8);
+}
+
 // MIS section 4: newBody.
 TYPED_TEST(BodyTest, NewBodyRefusesMassesAndMomentsOutOfRange) {
   using S = TypeParam;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -209,6 +210,25 @@ TEST(MathTest, NormalizeGivesUnitVectorsAtEveryScale) {
   EXPECT_EQ(normalize(0.0, kLargest), (Components<double>{0.0, 1.0}));
 }
 
+TEST(MathTest, RemainderIsExactWithTheSignOfTheDividend) {
+  EXPECT_EQ(remainder(7.5, 2.0), 1.5);
+  EXPECT_EQ(remainder(-7.5, 2.0), -1.5);
+  EXPECT_EQ(remainder(7.5, -2.0), 1.5);
+  EXPECT_EQ(remainder(1.0, 2.0), 1.0);
+  EXPECT_EQ(remainder(8.0, 2.0), 0.0);
+  EXPECT_TRUE(std::signbit(remainder(-8.0, 2.0)));
+  EXPECT_EQ(remainder(kLargest, 3.0), 2.0);
+  EXPECT_EQ(remainder(kLargest, kLeast), 0.0);
+  EXPECT_EQ(remainder(3.0, kInfinity), 3.0);
+  Random random(7);
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = random.anyFinite();
+    const double y = random.anyFinite();
+    if (y == 0.0) continue;
+    ASSERT_EQ(remainder(x, y), std::fmod(x, y)) << x << ' ' << y;
+  }
+}
+
 TEST(MathTest, NormalizeMapsZeroToZero) { EXPECT_EQ(normalize(0.0, -0.0), (Components<double>{0.0, 0.0})); }
 
 TEST(MathTest, SincosIsOddAndEven) {
@@ -313,6 +333,9 @@ TEST(MathTest, InvalidOperationsGiveOneNan) {
   EXPECT_EQ(bitsOf(pow(-1.0, 2.0)), one);
   EXPECT_EQ(bitsOf(pow(2.0, -kNan)), one);
   EXPECT_EQ(bitsOf(pow(-kNan, 2.0)), one);
+  EXPECT_EQ(bitsOf(remainder(kInfinity, 2.0)), one);
+  EXPECT_EQ(bitsOf(remainder(2.0, 0.0)), one);
+  EXPECT_EQ(bitsOf(remainder(2.0, -kNan)), one);
 }
 
 }  // namespace

@@ -48,6 +48,17 @@ TEST(FixedTest, DivisionSaturates) {
   EXPECT_EQ(reciprocal(Fixed(4)), Fixed(0.25));
 }
 
+TEST(FixedTest, RemainderIsExactWithTheSignOfTheDividend) {
+  EXPECT_EQ(remainder(Fixed(7.5), Fixed(2)), Fixed(1.5));
+  EXPECT_EQ(remainder(Fixed(-7.5), Fixed(2)), Fixed(-1.5));
+  EXPECT_EQ(remainder(Fixed(7.5), Fixed(-2)), Fixed(1.5));
+  EXPECT_EQ(remainder(Fixed(1), Fixed(2)), Fixed(1));
+  EXPECT_EQ(remainder(Fixed::max(), Fixed::fromRaw(10)).raw(), 7);
+  EXPECT_EQ(remainder(Fixed::lowest(), Fixed::fromRaw(-1)), Fixed());
+  EXPECT_EQ(remainder(Fixed(3), Fixed()), Fixed());
+  EXPECT_THROW(remainder(CheckedFixed(3), CheckedFixed()), FixedOverflow);
+}
+
 TEST(FixedTest, RootsAndUnitVectors) {
   EXPECT_EQ(sqrt(Fixed(9)), Fixed(3));
   EXPECT_EQ(sqrt(Fixed(-9)), Fixed());

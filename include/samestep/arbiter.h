@@ -48,7 +48,8 @@ struct Contact {
   }
 };
 
-/// The state of a pair of shapes whose boxes overlap: the lower id is a.
+/// The state of a pair of shapes whose boxes overlap: the lower id is a. A new one stands apart.
+/// MIS: arbiterInit
 template <Scalar S>
 struct Pair {
   ShapeId a{};

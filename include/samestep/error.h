@@ -60,7 +60,7 @@ enum class Fault : std::uint8_t {
   MalformedBytes,   ///< Bytes from outside that are not what they should be; see FormatError.
 };
 
-/// The sentence a user reads: the MIS's own where it has one.
+/// The sentence a user reads: the MIS's own where it has one. MIS: message
 const char* message(Fault fault);
 
 /// Base of everything the engine throws for a caller's mistake.
@@ -156,7 +156,7 @@ template <Fault F>
 #endif
 }
 
-/// Refuses the call unless the condition holds. Called before anything changes.
+/// Refuses the call unless the condition holds. Called before anything changes. MIS: assertHard, assertSoft
 template <Fault F>
 [[gnu::always_inline]] inline constexpr void require(bool condition) {
   if (!condition) [[unlikely]]

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <limits>
 
 #include "samestep/fixed.h"
 #include "samestep/fixed_math.h"
@@ -44,6 +45,24 @@ namespace samestep {
 
 /// a * b / c.
 [[gnu::always_inline]] constexpr double mulDiv(double a, double b, double c) { return a * b / c; }
+
+/// What is left of x after taking away whole multiples of y, toward zero: smaller in size than y, with the
+/// sign of x. Exact: y is doubled up to the size of x and taken away on the way back, and every step of that
+/// is exact. Takes one pass per binary digit of x / y.
+[[gnu::always_inline]] constexpr double remainder(double x, double y) {
+  const bool domain = x - x == 0.0 && (y < 0.0 || y > 0.0);
+  if (!domain) return std::numeric_limits<double>::quiet_NaN();
+  const double size = y < 0.0 ? -y : y;
+  double left = x < 0.0 ? -x : x;
+  if (left < size) return x;
+  double part = size;
+  while (part <= left - part) part += part;
+  for (; part >= size; part *= 0.5) {
+    if (left >= part) left -= part;
+    if (part == size) break;
+  }
+  return x < 0.0 ? -left : left;
+}
 
 /// 1 / x.
 [[gnu::always_inline]] constexpr double reciprocal(double x) { return 1.0 / x; }

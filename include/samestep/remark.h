@@ -22,6 +22,7 @@ struct Remarks {
 
   std::uint64_t count(Remark remark) const { return counts[static_cast<std::size_t>(remark)]; }
 
+  /// MIS: assertWarn
   void raise(Remark remark, const char* text) {
     ++counts[static_cast<std::size_t>(remark)];
     if (hook != nullptr) hook(remark, text, context);

@@ -137,6 +137,7 @@ struct WorldState {
   /// Seconds of the last step; 0 before the first.
   S timeStep{};
   BodyId staticBody{};
+  /// Bodies of every type. MIS: spaceArrayForBodyType
   SlotMap<Body<S>, BodyId> bodies;
   SlotMap<Shape<S>, ShapeId> shapes;
   /// Sorted by (a, b).
@@ -540,9 +541,12 @@ class Space {
   // The stages of a step, in their order.
   void checkStep(S dt) const;
   void integratePositions(S dt);
+  /// Places the shapes of what moved anew. MIS: shapeUpdateFunc
   void updateShapes();
   void findPairs();
   void collidePairs();
+  /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
+  /// MIS: spaceArbiterSetFilter
   void expirePairs();
   void preStep(S dt);
   void integrateVelocities(S dt);
@@ -562,12 +566,16 @@ class Space {
   void ensureCache() const;
   void placeShapesOf(std::uint32_t bodyIndex) const;
   void refreshTouched();
+  /// MIS: spaceCollideShapes
   void collidePair(Pair<S>& pair);
+  /// Takes over a collision and asks the callbacks: whether the pair shall be solved. MIS: arbiterUpdate
   bool applyCollision(Pair<S>& pair, const CollisionInfo<S>& info);
   void callSeparate(Pair<S>& pair, bool removal);
+  /// Forgets the pairs of a body or of a shape, which takes them out of every thread. MIS: arbiterUnthread
   void dropPairs(BodyId body, ShapeId shape);
   void eraseBody(BodyId id);
   void eraseShape(ShapeId id);
+  /// Whether the filters and bodies of two shapes let them meet. MIS: queryReject
   bool mayCollide(std::uint32_t a, std::uint32_t b) const;
   bool askHandlers(Pair<S>& pair);
   const CollisionHandler<S>* boundHandler(HandlerBinding::Kind kind, CollisionType typeA,

@@ -17,7 +17,7 @@ HERE = Path(__file__).resolve().parent
 COLUMNS = ["module", "name", "symbol", "header", "test", "status", "note"]
 TEST_FOLDERS = ("tests", "fixed/tests", "replay/tests", "lockstep/tests")
 TEST_MACRO = re.compile(r"\b(?:TYPED_)?TEST(?:_F|_P)?\s*\(\s*(\w+)\s*,\s*(\w+)\s*\)")
-HEADER_FOLDERS = ("include", "fixed/include", "replay/include", "lockstep/include")
+HEADER_FOLDERS = ("include", "src", "fixed/include", "replay/include", "lockstep/include")
 EXCEPTIONS = "Exceptions"
 
 

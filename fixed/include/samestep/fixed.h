@@ -176,6 +176,16 @@ class BasicFixed {
     }
     return fromRaw(static_cast<Rep>(result.raw));
   }
+  /// What is left of a after taking away whole multiples of b, toward zero: exact, smaller in size than b,
+  /// with the sign of a; 0 for b = 0.
+  friend constexpr BasicFixed remainder(BasicFixed a, BasicFixed b) {
+    if constexpr (kChecks) {
+      if (b.raw_ == 0) raw::report("remainder", kFractionBits, {a.raw_, b.raw_});
+    }
+    // The lowest value by -1 unit has a quotient that does not fit.
+    if (b.raw_ == 0 || b.raw_ == -1) return BasicFixed();
+    return fromRaw(static_cast<Rep>(a.raw_ % b.raw_));
+  }
   /// 1 / x, rounded once; saturates like a quotient, and 1 / 0 is the largest value.
   friend constexpr BasicFixed reciprocal(BasicFixed x) {
     const raw::Quotient result = raw::divide<way::Chosen, 2 * kFractionBits>(1, x.raw_, kMinRaw, kMaxRaw);
