@@ -20,7 +20,7 @@ using CollisionId = std::uint32_t;
 template <Scalar S>
 inline constexpr S kPi = S(3.14159265358979323846);
 
-/// x held within [0, 1]; for other limits there is clamp in math.h. MIS: fclamp01, fclamp
+/// x held within [0, 1]; for other limits there is clamp in math.h. MIS: fclamp01
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr S clamp01(S x) {
   return clamp(x, S(0), S(1));

@@ -93,7 +93,7 @@ template <class S>
   return a < b ? b : a;
 }
 
-/// x held within [low, high], for low <= high.
+/// x held within [low, high], for low <= high. MIS: fclamp
 template <class S>
 [[gnu::always_inline]] constexpr S clamp(S x, S low, S high) {
   return x < low ? low : (high < x ? high : x);
