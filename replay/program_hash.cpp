@@ -19,7 +19,8 @@ struct Options {
 
 void printHighWater() {
   for (const HighWaterMark& mark : highWaterTable().marks()) {
-    std::printf("high water\t%.*s\t%.9g\n", static_cast<int>(mark.name.size()), mark.name.data(), mark.value());
+    std::printf("high water\t%.*s\t%.9g\n", static_cast<int>(mark.name.size()), mark.name.data(),
+                mark.value());
   }
 }
 
