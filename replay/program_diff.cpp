@@ -76,6 +76,7 @@ int run(const Options& options, std::span<const std::uint8_t> a, std::span<const
   how.data = &progress;
   how.progress = [](std::uint64_t done, std::uint64_t total, void* data) {
     static_cast<Progress*>(data)->at(done, total);
+    return true;
   };
   const ReplayDifference difference = findDifference<S>(a, b, namedHandlerWiring<S>(), options.most, how);
   progress.clear();

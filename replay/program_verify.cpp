@@ -34,6 +34,7 @@ int verifyFile(const std::string& file) {
     options.data = &progress;
     options.progress = [](std::uint64_t done, std::uint64_t total, void* data) {
       static_cast<Progress*>(data)->at(done, total);
+      return true;
     };
     const std::int64_t start = milliseconds();
     const VerifyResult result = verify(bytes, options);

@@ -95,7 +95,7 @@ ReplayDifference findDifference(std::span<const std::uint8_t> bytesA, std::span<
     a.step();
     b.step();
     difference.tick = a.tick();
-    if (options.progress != nullptr) options.progress(a.tick(), common, options.data);
+    if (options.progress != nullptr && !options.progress(a.tick(), common, options.data)) break;
     if (a.space().hash() == b.space().hash()) continue;
     difference.worldsDiffer = true;
     Replay<S> againA(bytesA, wiring, options.limits);

@@ -50,12 +50,7 @@ void SceneBuilder<S>::readSettings(const Cursor& at) {
   at.allow({"solver", "gravity", "iterations", "substeps", "damping", "collisionSlop", "collisionBias",
             "collisionPersistence", "contactHertz", "contactDamping", "contactPushSpeed", "contactMargin",
             "bounceThreshold", "worldExtent"});
-  const auto read = [&](const char* key, auto&& set) {
-    if (!at.has(key)) return;
-    const Cursor value = at.at(key);
-    value.guard([&] { set(value); });
-  };
-  read("solver", [&](const Cursor& v) {
+  at.optional("solver", [&](const Cursor& v) {
     const std::string& solver = v.text();
     if (solver == "soft step") {
       space.setSolver(SolverKind::softStep);
@@ -63,25 +58,28 @@ void SceneBuilder<S>::readSettings(const Cursor& at) {
       v.fail("\"sequential impulses\" or \"soft step\" is wanted here");
     }
   });
-  read("substeps", [&](const Cursor& v) { space.setSubsteps(static_cast<int>(v.integer(0, 1u << 30))); });
-  read("contactHertz", [&](const Cursor& v) {
+  at.optional("substeps",
+              [&](const Cursor& v) { space.setSubsteps(static_cast<int>(v.integer(0, 1u << 30))); });
+  at.optional("contactHertz", [&](const Cursor& v) {
     space.setContactSoftness(v.template number<S>(), space.settings().contactDamping);
   });
-  read("contactDamping", [&](const Cursor& v) {
+  at.optional("contactDamping", [&](const Cursor& v) {
     space.setContactSoftness(space.settings().contactHertz, v.template number<S>());
   });
-  read("contactPushSpeed", [&](const Cursor& v) { space.setContactPushSpeed(v.template number<S>()); });
-  read("contactMargin", [&](const Cursor& v) { space.setContactMargin(v.template number<S>()); });
-  read("bounceThreshold", [&](const Cursor& v) { space.setBounceThreshold(v.template number<S>()); });
-  read("gravity", [&](const Cursor& v) { space.setGravity(v.template vector<S>()); });
-  read("iterations", [&](const Cursor& v) { space.setIterations(static_cast<int>(v.integer(0, 1u << 30))); });
-  read("damping", [&](const Cursor& v) { space.setDamping(v.template number<S>()); });
-  read("collisionSlop", [&](const Cursor& v) { space.setCollisionSlop(v.template number<S>()); });
-  read("collisionBias", [&](const Cursor& v) { space.setCollisionBias(v.template number<S>()); });
-  read("collisionPersistence", [&](const Cursor& v) {
+  at.optional("contactPushSpeed",
+              [&](const Cursor& v) { space.setContactPushSpeed(v.template number<S>()); });
+  at.optional("contactMargin", [&](const Cursor& v) { space.setContactMargin(v.template number<S>()); });
+  at.optional("bounceThreshold", [&](const Cursor& v) { space.setBounceThreshold(v.template number<S>()); });
+  at.optional("gravity", [&](const Cursor& v) { space.setGravity(v.template vector<S>()); });
+  at.optional("iterations",
+              [&](const Cursor& v) { space.setIterations(static_cast<int>(v.integer(0, 1u << 30))); });
+  at.optional("damping", [&](const Cursor& v) { space.setDamping(v.template number<S>()); });
+  at.optional("collisionSlop", [&](const Cursor& v) { space.setCollisionSlop(v.template number<S>()); });
+  at.optional("collisionBias", [&](const Cursor& v) { space.setCollisionBias(v.template number<S>()); });
+  at.optional("collisionPersistence", [&](const Cursor& v) {
     space.setCollisionPersistence(static_cast<std::uint32_t>(v.integer(0, 0xffffffffu)));
   });
-  read("worldExtent", [&](const Cursor& v) { space.setWorldExtent(v.template number<S>()); });
+  at.optional("worldExtent", [&](const Cursor& v) { space.setWorldExtent(v.template number<S>()); });
 }
 
 template <Scalar S>
@@ -164,15 +162,10 @@ Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
             "userData", "shapes", "grid"});
   Spawn<S> made;
   Body<S>& body = made.body;
-  const auto read = [&](const char* key, auto&& set) {
-    if (!at.has(key)) return;
-    const Cursor value = at.at(key);
-    value.guard([&] { set(value); });
-  };
-  read("rotates", [&](const Cursor& v) {
+  at.optional("rotates", [&](const Cursor& v) {
     if (!v.boolean()) body = Body<S>::nonRotating(S(0));
   });
-  read("type", [&](const Cursor& v) {
+  at.optional("type", [&](const Cursor& v) {
     const std::string& type = v.text();
     if (type == "static") {
       body.setType(BodyType::staticBody);
@@ -182,13 +175,13 @@ Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
       v.fail("\"dynamic\", \"kinematic\" or \"static\" is wanted here");
     }
   });
-  read("mass", [&](const Cursor& v) { body.setMass(v.template number<S>()); });
-  read("moment", [&](const Cursor& v) { body.setMoment(v.template number<S>()); });
-  read("position", [&](const Cursor& v) { body.setPosition(v.template vector<S>()); });
-  read("angle", [&](const Cursor& v) { body.setAngle(v.template number<S>()); });
-  read("velocity", [&](const Cursor& v) { body.setVelocity(v.template vector<S>()); });
-  read("angularVelocity", [&](const Cursor& v) { body.setAngularVelocity(v.template number<S>()); });
-  read("userData", [&](const Cursor& v) { body.setUserData(v.integer(0, ~std::uint64_t{0})); });
+  at.optional("mass", [&](const Cursor& v) { body.setMass(v.template number<S>()); });
+  at.optional("moment", [&](const Cursor& v) { body.setMoment(v.template number<S>()); });
+  at.optional("position", [&](const Cursor& v) { body.setPosition(v.template vector<S>()); });
+  at.optional("angle", [&](const Cursor& v) { body.setAngle(v.template number<S>()); });
+  at.optional("velocity", [&](const Cursor& v) { body.setVelocity(v.template vector<S>()); });
+  at.optional("angularVelocity", [&](const Cursor& v) { body.setAngularVelocity(v.template number<S>()); });
+  at.optional("userData", [&](const Cursor& v) { body.setUserData(v.integer(0, ~std::uint64_t{0})); });
   if (at.has("shapes")) {
     const Cursor shapes = at.at("shapes");
     for (std::uint32_t i = 0; i < shapes.size(); ++i) made.shapes.push_back(readShape(shapes.item(i)));
@@ -249,24 +242,19 @@ Shape<S> SceneBuilder<S>::readShape(const Cursor& at) {
             "friction", "elasticity", "surfaceVelocity", "collisionType", "group", "category", "mask",
             "sensor", "userData"});
   Shape<S> shape = readGeometry(at);
-  const auto read = [&](const char* key, auto&& set) {
-    if (!at.has(key)) return;
-    const Cursor value = at.at(key);
-    value.guard([&] { set(value); });
-  };
   const auto word = [](const Cursor& v) { return static_cast<std::uint32_t>(v.integer(0, 0xffffffffu)); };
   ShapeFilter filter;
-  read("density", [&](const Cursor& v) { shape.setDensity(v.template number<S>()); });
-  read("mass", [&](const Cursor& v) { shape.setMass(v.template number<S>()); });
-  read("friction", [&](const Cursor& v) { shape.setFriction(v.template number<S>()); });
-  read("elasticity", [&](const Cursor& v) { shape.setElasticity(v.template number<S>()); });
-  read("surfaceVelocity", [&](const Cursor& v) { shape.setSurfaceVelocity(v.template vector<S>()); });
-  read("collisionType", [&](const Cursor& v) { shape.setCollisionType(word(v)); });
-  read("group", [&](const Cursor& v) { filter.group = word(v); });
-  read("category", [&](const Cursor& v) { filter.category = word(v); });
-  read("mask", [&](const Cursor& v) { filter.mask = word(v); });
-  read("sensor", [&](const Cursor& v) { shape.setSensor(v.boolean()); });
-  read("userData", [&](const Cursor& v) { shape.setUserData(v.integer(0, ~std::uint64_t{0})); });
+  at.optional("density", [&](const Cursor& v) { shape.setDensity(v.template number<S>()); });
+  at.optional("mass", [&](const Cursor& v) { shape.setMass(v.template number<S>()); });
+  at.optional("friction", [&](const Cursor& v) { shape.setFriction(v.template number<S>()); });
+  at.optional("elasticity", [&](const Cursor& v) { shape.setElasticity(v.template number<S>()); });
+  at.optional("surfaceVelocity", [&](const Cursor& v) { shape.setSurfaceVelocity(v.template vector<S>()); });
+  at.optional("collisionType", [&](const Cursor& v) { shape.setCollisionType(word(v)); });
+  at.optional("group", [&](const Cursor& v) { filter.group = word(v); });
+  at.optional("category", [&](const Cursor& v) { filter.category = word(v); });
+  at.optional("mask", [&](const Cursor& v) { filter.mask = word(v); });
+  at.optional("sensor", [&](const Cursor& v) { shape.setSensor(v.boolean()); });
+  at.optional("userData", [&](const Cursor& v) { shape.setUserData(v.integer(0, ~std::uint64_t{0})); });
   shape.setFilter(filter);
   return shape;
 }

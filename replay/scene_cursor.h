@@ -53,6 +53,13 @@ class Cursor {
     return {item(0).number<S>(), item(1).number<S>()};
   }
 
+  /// Does something with the value of a key, if there is one; see guard.
+  template <class Action>
+  void optional(std::string_view key, Action&& action) const {
+    if (!has(key)) return;
+    const Cursor value = at(key);
+    value.guard([&] { action(value); });
+  }
   /// Does something with the engine and gives what it refuses this place.
   template <class Action>
   auto guard(Action&& action) const {

@@ -20,7 +20,10 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring
       result.firstWrongTick = replay.tick();
       return result;
     }
-    if (options.progress != nullptr) options.progress(replay.tick(), replay.ticks(), options.data);
+    if (options.progress != nullptr && !options.progress(replay.tick(), replay.ticks(), options.data)) {
+      result.stopped = true;
+      return result;
+    }
   } while (replay.step());
   result.matches = true;
   return result;

@@ -102,6 +102,17 @@ TYPED_TEST(VerifyTest, WorldsLargerThanAllowedAreRefused) {
   EXPECT_TRUE(verify<TypeParam>(bytes, testWiring<TypeParam>(), options).matches);
 }
 
+TYPED_TEST(VerifyTest, StopsWhenAskedTo) {
+  const Bytes bytes = recordSmallMatch<TypeParam>(50);
+  VerifyOptions options;
+  options.progress = [](std::uint64_t done, std::uint64_t total, void*) { return done < 10 && total == 50; };
+
+  const VerifyResult result = verify<TypeParam>(bytes, testWiring<TypeParam>(), options);
+
+  EXPECT_TRUE(result.stopped);
+  EXPECT_FALSE(result.matches);
+}
+
 /// Alters bytes as files are spoilt and as attackers try: flips, numbers, cuts, copies, splices.
 void corrupt(Random& random, Bytes& bytes, const Bytes& other) {
   const auto size = static_cast<std::uint32_t>(bytes.size());

@@ -27,7 +27,7 @@ struct ReplayDifference {
   std::vector<std::string> onlyB;
 };
 
-/// Replays two recordings side by side until their worlds differ or one ends.
+/// Replays two recordings side by side until their worlds differ, one ends, or options.progress says stop.
 /// @throws as verify
 template <Scalar S>
 ReplayDifference findDifference(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b,

@@ -11,6 +11,8 @@ namespace samestep {
 /// What replaying a recording showed.
 struct VerifyResult {
   bool matches = false;
+  /// Whether options.progress put an end to it; firstWrongTick then means nothing.
+  bool stopped = false;
   /// Steps in the recording.
   std::uint64_t ticks = 0;
   /// The first step after which the world's hash is not the recorded one; 0 for the world before the first.
@@ -21,9 +23,11 @@ struct VerifyResult {
 
 /// How verify goes about it.
 struct VerifyOptions {
+  /// For recordings from strangers, what the game's own matches need. The shapes bound the memory of a step:
+  /// n of them in one place are n^2 / 2 pairs.
   WorldLimits limits{};
-  /// Called after every step; null for none.
-  void (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
+  /// Called after every step; false stops, as for a recording that takes too long. Null for none.
+  bool (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
   void* data = nullptr;
 };
 
