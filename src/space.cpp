@@ -105,6 +105,13 @@ void Space<S>::setIterations(int iterations) {
 }
 
 template <Scalar S>
+void Space<S>::setSolver(SolverKind kind) {
+  Settings<S> next = state_.settings;
+  next.solver = kind;
+  setSettings(next);
+}
+
+template <Scalar S>
 void Space<S>::setSubsteps(int substeps) {
   Settings<S> next = state_.settings;
   next.substeps = substeps;

@@ -1013,5 +1013,15 @@ TYPED_TEST(SpaceTest, StagesAreObservedInTheirOrder) {
   EXPECT_EQ(stages.size(), 8u);
 }
 
+// A value that names no solver is refused like any other setting, and nothing changes.
+TYPED_TEST(SpaceTest, SetSolverRefusesWhatNamesNoSolver) {
+  Space<TypeParam> space;
+  space.setSolver(SolverKind::softStep);
+
+  EXPECT_THROW(space.setSolver(static_cast<SolverKind>(2)), ValueOutOfRange);
+
+  EXPECT_EQ(space.settings().solver, SolverKind::softStep);
+}
+
 }  // namespace
 }  // namespace samestep

@@ -234,7 +234,8 @@ class Space {
   void setCollisionPersistence(std::uint32_t steps);
   /// @throws ValueOutOfRange outside (0, 2^20]
   void setWorldExtent(S extent);
-  void setSolver(SolverKind kind) { state_.settings.solver = kind; }
+  /// @throws ValueOutOfRange for a value that names no solver
+  void setSolver(SolverKind kind);
   /// @throws InvalidIter outside [1, 100]
   void setSubsteps(int substeps);
   /// @param hertz    cycles per second, in [0, 1000]; 0: hard contacts that do not push overlaps apart
