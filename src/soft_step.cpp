@@ -32,7 +32,7 @@ void SoftSolver<S>::preStep(const Pair<S>& pair, std::uint32_t pairIndex, std::u
     // r . n is r x t.
     row.bendA = roundA ? S(0) : row.tangentArmA;
     row.bendB = roundB ? S(0) : row.tangentArmB;
-    row.separation = clamp(dot(contact.pointB - contact.pointA, pair.normal), S(-(1 << 10)), S(1 << 10));
+    row.separation = clamp(row.separation, S(-(1 << 10)), S(1 << 10));
     row.softness = soft;
     row.pair = pairIndex;
     row.contact = static_cast<std::uint16_t>(i);

@@ -34,8 +34,6 @@ struct SoftDrive {
 
 template <Scalar S>
 struct SoftRow : ContactAxes<S> {
-  /// The distance of the surfaces along the normal when the step began, m.
-  S separation{};
   /// How turning bends the contact points towards the centres, m: r . n, or 0 where the surface is a circle's
   /// and turning does not move it.
   S bendA{}, bendB{};

@@ -13,8 +13,8 @@ void Space<S>::softPreStep(S dt) {
   soft.rows.clear();
   impl.groups.clear(state_.bodies.slots());
   impl.solvedPairs.clear();
-  const auto bodyIndex = [&](ShapeId id) { return state_.shapes.valueAt(id.index).body().index; };
-  const auto round = [&](ShapeId id) { return state_.shapes.valueAt(id.index).type() == ShapeType::circle; };
+  const auto bodyIndex = [&](ShapeId id) { return impl.traits[id.index].body; };
+  const auto round = [&](ShapeId id) { return impl.traits[id.index].round; };
   for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
     const Pair<S>& pair = state_.pairs[i];
     if (pair.solved == 0) continue;
