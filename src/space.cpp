@@ -98,7 +98,7 @@ void Space<S>::setSettings(const Settings<S>& settings) {
       settings.solver != state_.settings.solver || settings.contactMargin != state_.settings.contactMargin;
   state_.settings = settings;
   if (!otherContacts) return;
-  for (Pair<S>& pair : state_.pairs) pair.reusable = 0;
+  for (Pair<S>& pair : state_.pairs) pair.manifold = Manifold::unknown;
 }
 
 template <Scalar S>
@@ -432,7 +432,7 @@ template <Scalar S>
 void Space<S>::forgetManifolds(ShapeId id) {
   for (const std::uint32_t index : threadOf(state_.shapes.valueAt(id.index).body())) {
     Pair<S>& pair = state_.pairs[index];
-    if (pair.a == id || pair.b == id) pair.reusable = 0;
+    if (pair.a == id || pair.b == id) pair.manifold = Manifold::unknown;
   }
 }
 
