@@ -412,6 +412,7 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
     checkShape(next, holder);
     ensureCache();
     if (holder.isDynamic() && !sameMass) holder.setMassProperties(massOfShapes(kept.body(), id, &next));
+    impl_->touch(kept.body().index);
   }
 
   impl_->shapesHashKnown = false;
@@ -423,7 +424,6 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
     forgetManifolds(id);
     impl_->prepareShape(id.index, kept);
     impl_->poses[kept.body().index].known = false;
-    impl_->touch(kept.body().index);
   }
 }
 

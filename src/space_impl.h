@@ -88,6 +88,8 @@ struct Space<S>::Impl {
   std::vector<std::uint32_t> planeOffset;
   std::vector<Plane<S>> planes;
   bool keepPlaced = false;
+  // Whether a step left midway: it may have moved bodies without placing them.
+  bool leftMidway = false;
   // Bodies that may have been moved by hand since the last step, each once.
   std::vector<std::uint32_t> touched;
   std::vector<std::uint8_t> isTouched;

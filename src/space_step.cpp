@@ -36,10 +36,16 @@ void Space<S>::step(S dt) {
   impl_->held.assign(state_.bodies.slots(), 0);
   {
     LockGuard guard(*this);
-    // What position functions ask about is the world before any of them moved a body.
-    if (!impl_->positionFuncs.empty()) refreshTouched();
+    // What position functions ask about is the world before any of them moved a body; the soft step begins
+    // with it: nothing but what was moved by hand has to be placed.
+    const bool soft = state_.settings.solver == SolverKind::softStep;
+    if (impl_->leftMidway) {
+      state_.bodies.each([this](BodyId id, const Body<S>&) { impl_->touch(id.index); });
+    }
+    impl_->leftMidway = true;
+    if (soft || !impl_->positionFuncs.empty()) refreshTouched();
     typename Impl::KeepPlaced keep(*impl_);
-    if (state_.settings.solver == SolverKind::sequentialImpulses) {
+    if (!soft) {
       integratePositions(dt);
       updateShapes();
       findPairs();
@@ -49,7 +55,8 @@ void Space<S>::step(S dt) {
       integrateVelocities(dt);
       solve(before == S(0) ? S(0) : stepRatio(dt, before));
     } else {
-      updateShapes();
+      impl_->forgetTouched();
+      endStage(Stage::updateShapes);
       findPairs();
       collidePairs();
       expirePairs();
@@ -61,6 +68,7 @@ void Space<S>::step(S dt) {
     postSolve();
     listRangeEvents();
     keep.end();
+    impl_->leftMidway = false;
     guard.finish();
   }
 }
