@@ -3,6 +3,9 @@
 
 #include <samestep/high_water.h>
 
+#include "kernels/kernels.h"
+#include "kernels/scalar_lanes.h"
+#include "kernels/solve_contacts.h"
 #include "require_ieee.h"
 
 namespace samestep {
@@ -17,104 +20,155 @@ Softness<S> makeSoftness(S hertz, S dampingRatio, S substep) {
   return {omega / a1, a2 * a3, a3};
 }
 
-template <Scalar S>
-void SoftSolver<S>::preStep(const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
-                            std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA,
-                            bool roundB, S bounceThreshold) {
-  const PairResponse<S> response = respond(a, b);
-  const std::uint16_t soft = a.isDynamic() && b.isDynamic() ? 0 : 1;
-  for (int i = 0; i < pair.count; ++i) {
-    const Contact<S>& contact = pair.contacts[i];
-    SoftRow<S>& row = rows.emplace_back();
-    row.bodyA = indexA;
-    row.bodyB = indexB;
-    prepareAxes(pair, contact, response, a, b, row);
-    // r . n is r x t.
-    row.bendA = roundA ? S(0) : row.tangentArmA;
-    row.bendB = roundB ? S(0) : row.tangentArmB;
-    row.separation = clamp(dot(contact.pointB - contact.pointA, pair.normal), S(-(1 << 10)), S(1 << 10));
-    row.softness = soft;
-    row.pair = pairIndex;
-    row.contact = static_cast<std::uint16_t>(i);
-    const S approach =
-        normalSpeed(row, b.velocity() - a.velocity(), a.angularVelocity(), b.angularVelocity());
-    row.bounce = approach < -bounceThreshold ? -(pair.elasticity * approach) : S(0);
-  }
-}
-
-template <Scalar S>
-void SoftSolver<S>::integrateVelocities() {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    SoftBody<S>& body = bodies[i];
-    const SoftDrive<S>& drive = drives[i];
-    body.velocity = {clamp(mulAdd(body.velocity.x, kept, drive.velocity.x), -kMaxSpeed<S>, kMaxSpeed<S>),
-                     clamp(mulAdd(body.velocity.y, kept, drive.velocity.y), -kMaxSpeed<S>, kMaxSpeed<S>)};
-    body.angularVelocity = clamp(mulAdd(body.angularVelocity, kept, drive.angularVelocity),
-                                 -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
-  }
-}
-
-template <Scalar S>
-void SoftSolver<S>::warmStart() {
-  for (const SoftRow<S>& row : rows) {
-    SoftBody<S>& a = bodies[row.bodyA];
-    SoftBody<S>& b = bodies[row.bodyB];
-    answer(row, row.normalSum, row.tangentSum, a.velocity, a.angularVelocity, b.velocity, b.angularVelocity);
-  }
-}
-
 namespace {
 
-/// One contact: friction against the normal impulse so far, then the normal, which has the last word.
-template <bool kSprings, Scalar S>
-[[gnu::always_inline]] inline void solveRow(SoftRow<S>& row, SoftBody<S>& a, SoftBody<S>& b,
-                                            const Softness<S>& soft, S perSubstep, S pushSpeed) {
-  S target = S(0), massScale = S(1), impulseScale = S(0);
-  const Vector<S> moved = b.moved - a.moved;
-  const S separation = row.separation + normalSpeed(row, moved, a.turned, b.turned) +
-                       cross(row.bendA, a.bend, row.bendB, b.bend);
-  if (separation > S(0)) {
-    // Not touching yet: may come as near as it is within this substep.
-    target = separation * perSubstep;
-  } else if (kSprings) {
-    target = max(separation * soft.biasRate, -pushSpeed);
-    massScale = soft.massScale;
-    impulseScale = soft.impulseScale;
-  }
-  const S limit = row.friction * row.normalSum;
-  const S tangent =
-      tangentSpeed(row, b.velocity - a.velocity, a.angularVelocity, b.angularVelocity) + row.surface;
-  const S tangentBefore = row.tangentSum;
-  row.tangentSum = clamp(tangentBefore - tangent, -limit, limit);
-  answerTangent(row, row.tangentSum - tangentBefore, a.velocity, a.angularVelocity, b.velocity,
-                b.angularVelocity);
+#ifndef SAMESTEP_FIXED_ONLY
+ContactPasses<double, false> passesFor(double) {
+#if defined(__x86_64__) || defined(__i386__)
+  if (kernels::doubleAvx2 != nullptr && __builtin_cpu_supports("avx2")) return *kernels::doubleAvx2;
+#endif
+  return kernels::doubleBy2;
+}
+#endif
+template <FixedNumber S>
+ContactPasses<S, true> passesFor(S) {
+  return {passOver<ScalarLanes<S>, true, ContactBlock<S, true>>,
+          passOver<ScalarLanes<S>, false, ContactBlock<S, true>>};
+}
 
-  const S normal = normalSpeed(row, b.velocity - a.velocity, a.angularVelocity, b.angularVelocity);
-  const S normalBefore = row.normalSum;
-  row.normalSum =
-      clamp(normalBefore - dot(massScale, normal + target, impulseScale, normalBefore), S(0), kMaxSum<S>);
-  row.normalMost = max(row.normalMost, row.normalSum);
-  highWater<S>("soft step: relative speed", max(abs(normal), abs(tangent)));
-  highWater<S>("soft step: target speed", target);
-  highWater<S>("soft step: friction limit", limit);
-  answerNormal(row, row.normalSum - normalBefore, a.velocity, a.angularVelocity, b.velocity,
-               b.angularVelocity);
+/// Gives an impulse (x, y), as the speed it gives A and B together, and what it turns them, to a body's
+/// velocity.
+template <Scalar S>
+void give(S velocity[4], S share, S x, S y, S turn) {
+  velocity[0] += share * x;
+  velocity[1] += share * y;
+  velocity[2] += turn;
 }
 
 }  // namespace
 
 template <Scalar S>
-void SoftSolver<S>::solve() {
-  for (SoftRow<S>& row : rows) {
-    solveRow<true>(row, bodies[row.bodyA], bodies[row.bodyB], softness[row.softness], perSubstep, pushSpeed);
-  }
+SoftSolver<S>::SoftSolver() : passes(passesFor(S())) {}
+
+template <Scalar S>
+void SoftSolver<S>::openBlock() {
+  Block& block = blocks.emplace_back();
+  block.fixedA = block.fixedB = (1 << kBlockLanes) - 1;
+  BlockRest<S>& rest = rests.emplace_back();
+  for (std::uint32_t& pair : rest.pair) pair = BlockRest<S>::kNoPair;
 }
 
 template <Scalar S>
-void SoftSolver<S>::relax() {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    SoftRow<S>& row = rows[i];
-    solveRow<false>(row, bodies[row.bodyA], bodies[row.bodyB], softness[row.softness], perSubstep, pushSpeed);
+void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
+                            std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA,
+                            bool roundB, S bounceThreshold) {
+  Block& block = blocks.back();
+  BlockRest<S>& rest = rests.back();
+  const PairResponse<S> response = respond(a, b);
+  const S masses = response.massA + response.massB;
+  const S perMass = reciprocal(masses);
+  const auto bit = static_cast<std::uint8_t>(1 << lane);
+  const auto mark = [&](std::uint8_t& bits, bool set) {
+    bits = static_cast<std::uint8_t>(set ? bits | bit : bits & ~bit);
+  };
+  const Vector<S> n = pair.normal;
+  const Vector<S> t = perp(n);
+  block.bodyA[lane] = indexA;
+  block.bodyB[lane] = indexB;
+  block.count[lane] = pair.count;
+  block.points = max(block.points, pair.count);
+  mark(block.fixedA, !a.isDynamic());
+  mark(block.fixedB, !b.isDynamic());
+  mark(block.roundA, roundA);
+  mark(block.roundB, roundB);
+  mark(block.stiff, !a.isDynamic() || !b.isDynamic());
+  block.normalX[lane] = n.x;
+  block.normalY[lane] = n.y;
+  block.shareA[lane] = response.massA * perMass;
+  const S shareB = S(1) - block.shareA[lane];
+  block.friction[lane] = pair.friction;
+  block.surface[lane] = dot(pair.surfaceVelocity, t);
+  rest.pair[lane] = pairIndex;
+
+  S normalPart = S(0), tangentPart = S(0), turnA = S(0), turnB = S(0);
+  Vector<S> armA[kMaxContactsPerPair], armB[kMaxContactsPerPair], reachA, reachB;
+  for (int i = 0; i < pair.count; ++i) {
+    armA[i] = pair.contacts[i].pointA - a.worldCenter();
+    armB[i] = pair.contacts[i].pointB - b.worldCenter();
+    reachA = {max(reachA.x, abs(armA[i].x)), max(reachA.y, abs(armA[i].y))};
+    reachB = {max(reachB.x, abs(armB[i].x)), max(reachB.y, abs(armB[i].y))};
+  }
+  const PairResponse<S> held = response.at(reachA, reachB);
+  block.momentA[lane] = held.momentA * perMass;
+  block.momentB[lane] = held.momentB * perMass;
+  for (int i = 0; i < pair.count; ++i) {
+    const Contact<S>& contact = pair.contacts[i];
+    auto& point = block.point[i];
+    const auto fill = [&](auto& axis, const Vector<S>& direction, S kept) {
+      const S inA = cross(armA[i], direction);
+      const S inB = cross(armB[i], direction);
+      const S spinA = block.momentA[lane] * inA;
+      const S spinB = block.momentB[lane] * inB;
+      axis.armA[lane] = inA;
+      axis.armB[lane] = inB;
+      axis.mass[lane] = reciprocal(S(1) + dot(spinA, inA, spinB, inB));
+      axis.sum[lane] = kept;
+      if constexpr (kStoresSpins<S>) {
+        axis.spinA[lane] = spinA;
+        axis.spinB[lane] = spinB;
+      }
+      turnA += spinA * kept;
+      turnB += spinB * kept;
+      // Of a body that nothing turns the arm counts for nothing.
+      highWater<S>("contact: r x n of a body that turns", held.momentA > S(0) ? inA : S(0));
+      highWater<S>("contact: r x n of a body that turns", held.momentB > S(0) ? inB : S(0));
+      highWater<S>("contact: spin per unit of u", max(abs(spinA), abs(spinB)));
+      highWater<S>("contact: kept impulse u", kept);
+    };
+    fill(point.normal, n, clamp(contact.normalSpeed * masses, S(0), kMaxSum<S>));
+    fill(point.tangent, t, clamp(contact.tangentSpeed * masses, -kMaxSum<S>, kMaxSum<S>));
+    normalPart += point.normal.sum[lane];
+    tangentPart += point.tangent.sum[lane];
+    point.separation[lane] = clamp(dot(contact.pointB - contact.pointA, n), S(-(1 << 10)), S(1 << 10));
+    const Vector<S> dv = b.velocity() - a.velocity();
+    const S approach = dot(n.x, dv.x, n.y, dv.y) + cross(point.normal.armB[lane], b.angularVelocity(),
+                                                         point.normal.armA[lane], a.angularVelocity());
+    if (approach < -bounceThreshold && pair.elasticity > S(0)) {
+      rest.bounce[i][lane] = -(pair.elasticity * approach);
+      block.bounces = 1;
+    }
+  }
+  const S x = cross(n.x, normalPart, n.y, tangentPart);
+  const S y = dot(n.y, normalPart, n.x, tangentPart);
+  if (a.isDynamic()) give(drives[indexA].base, block.shareA[lane], x, y, turnA);
+  if (b.isDynamic()) give(drives[indexB].base, shareB, -x, -y, -turnB);
+}
+
+template <Scalar S>
+void SoftSolver<S>::pass(ContactPass<S, kStoresSpins<S>> kernel) {
+  kernel(blocks.data(), rests.data(), static_cast<std::uint32_t>(blocks.size()), bodies.data(), constants);
+}
+
+template <Scalar S>
+void SoftSolver<S>::step() {
+  integrateVelocities();
+  pass(passes.solve);
+  integratePositions();
+  pass(passes.relax);
+}
+
+/// What contacts gave a velocity in the last substep is its difference from the base, and is given again.
+template <Scalar S>
+void SoftSolver<S>::integrateVelocities() {
+  constexpr S kLimits[3] = {kMaxSpeed<S>, kMaxSpeed<S>, kMaxAngularSpeed<S>};
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    SoftBody<S>& body = bodies[i];
+    SoftDrive<S>& drive = drives[i];
+    for (int k = 0; k < 3; ++k) {
+      const S given = body.velocity[k] - drive.base[k];
+      drive.base[k] = clamp(mulAdd(body.velocity[k], drive.kept, drive.push[k]), -kLimits[k], kLimits[k]);
+      body.velocity[k] = drive.base[k] + given;
+    }
   }
 }
 
@@ -123,33 +177,67 @@ void SoftSolver<S>::integratePositions() {
   const S half = ratio<S>(1, 2);
   const S most = ratio<S>(1, 8);
   for (SoftBody<S>& body : bodies) {
-    body.moved = mulAdd(body.velocity, substep, body.moved);
-    body.turned = mulAdd(body.angularVelocity, substep, body.turned);
+    for (int k = 0; k < 3; ++k) {
+      body.moved[k] = mulAdd(body.velocity[k], constants.substep, body.moved[k]);
+    }
     // Beyond half a radian the bend is no longer a parabola; the contact is found anew next step.
-    body.bend = min(body.turned * body.turned * half, most);
+    body.moved[3] = min(body.moved[2] * body.moved[2] * half, most);
   }
 }
 
 template <Scalar S>
 void SoftSolver<S>::bounce() {
-  for (SoftRow<S>& row : rows) {
-    if (row.bounce == S(0) || row.normalMost == S(0)) continue;
-    SoftBody<S>& a = bodies[row.bodyA];
-    SoftBody<S>& b = bodies[row.bodyB];
-    const S speed = normalSpeed(row, b.velocity - a.velocity, a.angularVelocity, b.angularVelocity);
-    const S before = row.normalSum;
-    row.normalSum = clamp(before + (row.bounce - speed), S(0), kMaxSum<S>);
-    row.normalTotal += row.normalSum - before;
-    answer(row, row.normalSum - before, S(0), a.velocity, a.angularVelocity, b.velocity, b.angularVelocity);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    Block& block = blocks[i];
+    if (block.bounces == 0) continue;
+    BlockRest<S>& rest = rests[i];
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      SoftBody<S>& a = bodies[block.bodyA[lane]];
+      SoftBody<S>& b = bodies[block.bodyB[lane]];
+      for (int k = 0; k < block.count[lane]; ++k) {
+        auto& axis = block.point[k].normal;
+        if (rest.bounce[k][lane] == S(0) || rest.normalTotal[k][lane] == S(0)) continue;
+        const Vector<S> n(block.normalX[lane], block.normalY[lane]);
+        const S speed =
+            dot(n.x, b.velocity[0] - a.velocity[0], n.y, b.velocity[1] - a.velocity[1]) +
+            cross(axis.armB[lane], b.velocity[2], axis.armA[lane], a.velocity[2]);
+        const S before = axis.sum[lane];
+        axis.sum[lane] =
+            clamp(before + axis.mass[lane] * (rest.bounce[k][lane] - speed), S(0), constants.mostSum);
+        const S change = axis.sum[lane] - before;
+        rest.normalTotal[k][lane] += change;
+        if ((block.fixedA >> lane & 1) == 0) {
+          give(a.velocity, block.shareA[lane], -(n.x * change), -(n.y * change),
+               -(block.momentA[lane] * axis.armA[lane] * change));
+        }
+        if ((block.fixedB >> lane & 1) == 0) {
+          give(b.velocity, S(1) - block.shareA[lane], n.x * change, n.y * change,
+               block.momentB[lane] * axis.armB[lane] * change);
+        }
+      }
+    }
   }
 }
 
 template <Scalar S>
-void SoftSolver<S>::sum() {
-  for (SoftRow<S>& row : rows) {
-    row.normalTotal += row.normalSum;
-    row.tangentTotal += row.tangentSum;
-    highWater<S>("soft step: impulse total", row.normalTotal);
+void SoftSolver<S>::store(std::vector<Pair<S>>& pairs) const {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Block& block = blocks[i];
+    const BlockRest<S>& rest = rests[i];
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      if (rest.pair[lane] == BlockRest<S>::kNoPair) continue;
+      // The lighter body has the larger share.
+      const S lighter = max(block.shareA[lane], S(1) - block.shareA[lane]);
+      Pair<S>& pair = pairs[rest.pair[lane]];
+      for (int k = 0; k < block.count[lane]; ++k) {
+        Contact<S>& contact = pair.contacts[k];
+        contact.normalSpeed = block.point[k].normal.sum[lane] * lighter;
+        contact.tangentSpeed = block.point[k].tangent.sum[lane] * lighter;
+        contact.normalTotal = min(rest.normalTotal[k][lane], kMaxSum<S>) * lighter;
+        contact.tangentTotal = clamp(rest.tangentTotal[k][lane], -kMaxSum<S>, kMaxSum<S>) * lighter;
+        highWater<S>("soft step: impulse total", rest.normalTotal[k][lane]);
+      }
+    }
   }
 }
 

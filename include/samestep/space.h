@@ -555,6 +555,8 @@ class Space {
   void callPositionFunc(std::uint32_t index, S dt);
   void callVelocityFunc(std::uint32_t index, S kept, S dt);
   void softPreStep(S dt);
+  void softTakeBodies(S dt);
+  void softTakePairs();
   void softSolve();
   void softFinish(S dt);
   S pairMargin() const;
