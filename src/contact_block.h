@@ -10,53 +10,86 @@ namespace samestep {
 /// Pairs side by side in a block: as many as the widest kernel takes at once.
 inline constexpr int kBlockLanes = 4;
 
+/// What the numbers of a block are: a scalar as it is.
+template <class S, bool kSpins>
+struct PlainNumbers {
+  using Coefficient = S;  ///< Directions, arms, masses.
+  using Speed = S;        ///< Of a body.
+  using Sum = S;          ///< Impulses and what is found from speeds.
+  /// Whether the spin per impulse is kept, where products are dear.
+  static constexpr bool kStoresSpins = kSpins;
+};
+
+/// Integers of 32 bits in units of powers of two, sums of 64 bits. Speeds and impulses have one unit for the
+/// whole step, chosen by the fastest body, and ways another; a body's turning is kept as the way of a point at
+/// its radius, a power of two no less than the arms of its contacts.
+struct FastNumbers {
+  using Coefficient = std::int32_t;
+  using Speed = std::int32_t;
+  using Sum = std::int64_t;
+  static constexpr bool kStoresSpins = true;
+  /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of spins; of friction;
+  /// of rates, speeds by ways.
+  static constexpr int kUnitBits = 30, kSpinBits = 26, kFrictionBits = 22, kRateBits = 22;
+  /// What speeds, ways and changes of impulses must stay below in size: then no product leaves 64 bits.
+  static constexpr std::int64_t kRange = std::int64_t{1} << 30;
+};
+
 /// One body in the substeps.
-template <class T>
-struct alignas(32) SoftBody {
+template <class N>
+struct alignas(4 * sizeof(typename N::Speed)) SoftBody {
   /// x, y, angular, 0: m/s, rad/s.
-  T velocity[4];
+  typename N::Speed velocity[4];
   /// Since the step began: x, y, m; the angle, rad; half its square: how far turning moves a point towards
   /// the centre, per metre.
-  T moved[4];
+  typename N::Speed moved[4];
 };
 
 /// What else a substep needs of a body.
-template <class T>
-struct alignas(32) SoftDrive {
+template <class N>
+struct alignas(4 * sizeof(typename N::Speed)) SoftDrive {
   /// Added to the velocity by each substep.
-  T push[4];
+  typename N::Speed push[4];
   /// The velocity of the substep before contacts: what it is less by holds the impulses of the contacts.
-  T base[4];
+  typename N::Speed base[4];
   /// What damping leaves of a velocity in one substep.
-  T kept;
+  typename N::Coefficient kept;
 };
 
 /// One axis of a contact point, the normal n or the tangent t = perp(n), of each lane. An impulse u is the
 /// change of the relative speed that the masses alone would make: no mass appears in the loop.
-template <class T, bool kStoresSpins>
+template <class N, bool = N::kStoresSpins>
 struct BlockAxis {
   /// r x axis of both bodies, m.
-  T armA[kBlockLanes], armB[kBlockLanes];
+  typename N::Coefficient armA[kBlockLanes], armB[kBlockLanes];
   /// The u that changes the speed at the point by 1, in [0, 1].
-  T mass[kBlockLanes];
+  typename N::Coefficient mass[kBlockLanes];
   /// Accumulated u, m/s.
-  T sum[kBlockLanes];
+  typename N::Sum sum[kBlockLanes];
 };
-/// Where products are dear, the spin that a u of 1 gives each body is kept, too, 1/m.
-template <class T>
-struct BlockAxis<T, true> : BlockAxis<T, false> {
-  T spinA[kBlockLanes], spinB[kBlockLanes];
+template <class N>
+struct BlockAxis<N, true> : BlockAxis<N, false> {
+  /// The spin that a u of 1 gives each body, 1/m.
+  typename N::Coefficient spinA[kBlockLanes], spinB[kBlockLanes];
 };
 
-template <class T, bool kStoresSpins>
+template <class N>
 struct BlockPoint {
-  BlockAxis<T, kStoresSpins> normal, tangent;
+  BlockAxis<N> normal, tangent;
   /// Between the surfaces along the normal when the step began, m.
-  T separation[kBlockLanes];
+  typename N::Coefficient separation[kBlockLanes];
 };
+
+/// How an impulse turns the bodies, 1/m^2: spin = moment * arm * u.
+template <class N, bool = N::kStoresSpins>
+struct BlockMoments {
+  typename N::Coefficient momentA[kBlockLanes], momentB[kBlockLanes];
+};
+template <class N>
+struct BlockMoments<N, true> {};
 
 /// Up to four pairs that share no body but such as nothing moves.
-template <class T, bool kStoresSpins>
+template <class N>
 struct alignas(64) ContactBlock {
   std::uint32_t bodyA[kBlockLanes], bodyB[kBlockLanes];
   /// Points of each lane, and the most of them.
@@ -66,25 +99,24 @@ struct alignas(64) ContactBlock {
   std::uint8_t fixedA, fixedB, roundA, roundB, stiff;
   /// Whether any point bounces.
   std::uint8_t bounces;
-  alignas(32) T normalX[kBlockLanes];
-  T normalY[kBlockLanes];
+  alignas(32) typename N::Coefficient normalX[kBlockLanes];
+  typename N::Coefficient normalY[kBlockLanes];
   /// The part of u that changes the speed of A; the rest that of B.
-  T shareA[kBlockLanes];
-  /// How an impulse turns the bodies, 1/m^2: spin = moment * arm * u.
-  T momentA[kBlockLanes], momentB[kBlockLanes];
-  T friction[kBlockLanes];
+  typename N::Coefficient shareA[kBlockLanes];
+  BlockMoments<N> moments;
+  typename N::Coefficient friction[kBlockLanes];
   /// The surface's own speed along the tangent, m/s.
-  T surface[kBlockLanes];
-  BlockPoint<T, kStoresSpins> point[2];
+  typename N::Speed surface[kBlockLanes];
+  BlockPoint<N> point[2];
 };
 
 /// What a block needs once in a while.
-template <class T>
+template <class N>
 struct alignas(32) BlockRest {
   /// The sums added up over the substeps.
-  T normalTotal[2][kBlockLanes], tangentTotal[2][kBlockLanes];
+  typename N::Sum normalTotal[2][kBlockLanes], tangentTotal[2][kBlockLanes];
   /// What a bounce shall leave, m/s; 0 for none.
-  T bounce[2][kBlockLanes];
+  typename N::Sum bounce[2][kBlockLanes];
   /// Which pair of the Space each lane is; kNoPair for an empty one.
   std::uint32_t pair[kBlockLanes];
   static constexpr std::uint32_t kNoPair = 0xffffffffu;
@@ -99,30 +131,33 @@ struct Softness {
 };
 
 /// Of a substep.
-template <class T>
+template <class N>
 struct SoftConstants {
   /// Between bodies that move, and against one that does not.
-  Softness<T> softness[2];
+  Softness<typename N::Coefficient> softness[2];
   /// Seconds, and its inverse.
-  T substep, perSubstep;
+  typename N::Coefficient substep, perSubstep;
   /// The greatest speed of pushing apart, m/s.
-  T pushSpeed;
+  typename N::Speed pushSpeed;
   /// The greatest accumulated u, m/s.
-  T mostSum;
+  typename N::Sum mostSum;
+  /// The greatest distance that a kernel of limited range tells apart, m.
+  typename N::Speed mostGap;
 };
 
-/// One pass over blocks, in order.
-template <class T, bool kStoresSpins>
-using ContactPass = void (*)(ContactBlock<T, kStoresSpins>* blocks, BlockRest<T>* rests, std::uint32_t count,
-                             SoftBody<T>* bodies, const SoftConstants<T>& constants);
+/// Passes over `count` blocks, in order.
+/// @return not 0 where a number left the kernel's range: the results are then worth nothing
+template <class N>
+using ContactPass = std::uint64_t (*)(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32_t count,
+                                      SoftBody<N>* bodies, const SoftConstants<N>& constants);
 
 /// The passes of one kernel.
-template <class T, bool kStoresSpins>
+template <class N>
 struct ContactPasses {
   /// With springs.
-  ContactPass<T, kStoresSpins> solve;
+  ContactPass<N> solve;
   /// Without; adds the substep's sums to the totals.
-  ContactPass<T, kStoresSpins> relax;
+  ContactPass<N> relax;
 };
 
 }  // namespace samestep

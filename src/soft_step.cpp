@@ -23,7 +23,7 @@ Softness<S> makeSoftness(S hertz, S dampingRatio, S substep) {
 namespace {
 
 #ifndef SAMESTEP_FIXED_ONLY
-ContactPasses<double, false> passesFor(double) {
+ContactPasses<SolverNumbers<double>> passesFor(double) {
 #if defined(__x86_64__) || defined(__i386__)
   if (kernels::doubleAvx2 != nullptr && __builtin_cpu_supports("avx2")) return *kernels::doubleAvx2;
 #endif
@@ -31,9 +31,8 @@ ContactPasses<double, false> passesFor(double) {
 }
 #endif
 template <FixedNumber S>
-ContactPasses<S, true> passesFor(S) {
-  return {passOver<ScalarLanes<S>, true, ContactBlock<S, true>>,
-          passOver<ScalarLanes<S>, false, ContactBlock<S, true>>};
+ContactPasses<SolverNumbers<S>> passesFor(S) {
+  return kPassesOf<ScalarLanes<S>>;
 }
 
 /// Gives an impulse (x, y), as the speed it gives A and B together, and what it turns them, to a body's
@@ -45,17 +44,76 @@ void give(S velocity[4], S share, S x, S y, S turn) {
   velocity[2] += turn;
 }
 
+template <class Block, class Axis>
+auto spinA(const Block& block, const Axis& axis, int lane) {
+  if constexpr (requires { axis.spinA; }) {
+    return axis.spinA[lane];
+  } else {
+    return block.moments.momentA[lane] * axis.armA[lane];
+  }
+}
+template <class Block, class Axis>
+auto spinB(const Block& block, const Axis& axis, int lane) {
+  if constexpr (requires { axis.spinB; }) {
+    return axis.spinB[lane];
+  } else {
+    return block.moments.momentB[lane] * axis.armB[lane];
+  }
+}
+
 }  // namespace
 
 template <Scalar S>
 SoftSolver<S>::SoftSolver() : passes(passesFor(S())) {}
 
 template <Scalar S>
+void SoftSolver<S>::clear() {
+  bodies.assign(1, {});
+  drives.assign(1, {});
+  freeBodies.clear();
+  blocks.clear();
+  rests.clear();
+}
+
+namespace {
+
+template <Scalar S, class SoftBody>
+void start(SoftBody& to, const Body<S>& body) {
+  to.velocity[0] = body.velocity().x;
+  to.velocity[1] = body.velocity().y;
+  to.velocity[2] = body.angularVelocity();
+}
+
+}  // namespace
+
+template <Scalar S>
+std::uint32_t SoftSolver<S>::addBody(const Body<S>& body, const SoftDrive<Numbers>& drive) {
+  SoftBody<Numbers>& added = bodies.emplace_back();
+  start(added, body);
+  SoftDrive<Numbers>& kept = drives.emplace_back(drive);
+  for (int k = 0; k < 3; ++k) kept.base[k] = added.velocity[k];
+  return static_cast<std::uint32_t>(bodies.size() - 1);
+}
+
+template <Scalar S>
+void SoftSolver<S>::addFree(const Body<S>& body, const SoftDrive<Numbers>& drive, int substeps) {
+  SoftBody<Numbers> moving{};
+  start(moving, body);
+  SoftDrive<Numbers> alone = drive;
+  for (int i = 0; i < substeps; ++i) {
+    for (int k = 0; k < 3; ++k) alone.base[k] = moving.velocity[k];
+    integrateVelocity(moving, alone);
+    integratePosition(moving);
+  }
+  freeBodies.push_back(moving);
+}
+
+template <Scalar S>
 void SoftSolver<S>::openBlock() {
   Block& block = blocks.emplace_back();
   block.fixedA = block.fixedB = (1 << kBlockLanes) - 1;
-  BlockRest<S>& rest = rests.emplace_back();
-  for (std::uint32_t& pair : rest.pair) pair = BlockRest<S>::kNoPair;
+  Rest& rest = rests.emplace_back();
+  for (std::uint32_t& pair : rest.pair) pair = Rest::kNoPair;
 }
 
 template <Scalar S>
@@ -63,7 +121,7 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
                             std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA,
                             bool roundB, S bounceThreshold) {
   Block& block = blocks.back();
-  BlockRest<S>& rest = rests.back();
+  Rest& rest = rests.back();
   const PairResponse<S> response = respond(a, b);
   const S masses = response.massA + response.massB;
   const S perMass = reciprocal(masses);
@@ -99,30 +157,34 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
     reachB = {max(reachB.x, abs(armB[i].x)), max(reachB.y, abs(armB[i].y))};
   }
   const PairResponse<S> held = response.at(reachA, reachB);
-  block.momentA[lane] = held.momentA * perMass;
-  block.momentB[lane] = held.momentB * perMass;
+  const S momentA = held.momentA * perMass;
+  const S momentB = held.momentB * perMass;
+  if constexpr (!Numbers::kStoresSpins) {
+    block.moments.momentA[lane] = momentA;
+    block.moments.momentB[lane] = momentB;
+  }
   for (int i = 0; i < pair.count; ++i) {
     const Contact<S>& contact = pair.contacts[i];
     auto& point = block.point[i];
     const auto fill = [&](auto& axis, const Vector<S>& direction, S kept) {
       const S inA = cross(armA[i], direction);
       const S inB = cross(armB[i], direction);
-      const S spinA = block.momentA[lane] * inA;
-      const S spinB = block.momentB[lane] * inB;
+      const S turnPerA = momentA * inA;
+      const S turnPerB = momentB * inB;
       axis.armA[lane] = inA;
       axis.armB[lane] = inB;
-      axis.mass[lane] = reciprocal(S(1) + dot(spinA, inA, spinB, inB));
+      axis.mass[lane] = reciprocal(S(1) + dot(turnPerA, inA, turnPerB, inB));
       axis.sum[lane] = kept;
-      if constexpr (kStoresSpins<S>) {
-        axis.spinA[lane] = spinA;
-        axis.spinB[lane] = spinB;
+      if constexpr (Numbers::kStoresSpins) {
+        axis.spinA[lane] = turnPerA;
+        axis.spinB[lane] = turnPerB;
       }
-      turnA += spinA * kept;
-      turnB += spinB * kept;
+      turnA += turnPerA * kept;
+      turnB += turnPerB * kept;
       // Of a body that nothing turns the arm counts for nothing.
       highWater<S>("contact: r x n of a body that turns", held.momentA > S(0) ? inA : S(0));
       highWater<S>("contact: r x n of a body that turns", held.momentB > S(0) ? inB : S(0));
-      highWater<S>("contact: spin per unit of u", max(abs(spinA), abs(spinB)));
+      highWater<S>("contact: spin per unit of u", max(abs(turnPerA), abs(turnPerB)));
       highWater<S>("contact: kept impulse u", kept);
     };
     fill(point.normal, n, clamp(contact.normalSpeed * masses, S(0), kMaxSum<S>));
@@ -145,44 +207,38 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
 }
 
 template <Scalar S>
-void SoftSolver<S>::pass(ContactPass<S, kStoresSpins<S>> kernel) {
+void SoftSolver<S>::pass(ContactPass<Numbers> kernel) {
   kernel(blocks.data(), rests.data(), static_cast<std::uint32_t>(blocks.size()), bodies.data(), constants);
 }
 
 template <Scalar S>
-void SoftSolver<S>::step() {
-  integrateVelocities();
-  pass(passes.solve);
-  integratePositions();
-  pass(passes.relax);
+void SoftSolver<S>::run(int substeps) {
+  for (int i = 0; i < substeps; ++i) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) integrateVelocity(bodies[k], drives[k]);
+    pass(passes.solve);
+    for (SoftBody<Numbers>& body : bodies) integratePosition(body);
+    pass(passes.relax);
+  }
 }
 
 /// What contacts gave a velocity in the last substep is its difference from the base, and is given again.
 template <Scalar S>
-void SoftSolver<S>::integrateVelocities() {
+void SoftSolver<S>::integrateVelocity(SoftBody<Numbers>& body, SoftDrive<Numbers>& drive) const {
   constexpr S kLimits[3] = {kMaxSpeed<S>, kMaxSpeed<S>, kMaxAngularSpeed<S>};
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    SoftBody<S>& body = bodies[i];
-    SoftDrive<S>& drive = drives[i];
-    for (int k = 0; k < 3; ++k) {
-      const S given = body.velocity[k] - drive.base[k];
-      drive.base[k] = clamp(mulAdd(body.velocity[k], drive.kept, drive.push[k]), -kLimits[k], kLimits[k]);
-      body.velocity[k] = drive.base[k] + given;
-    }
+  for (int k = 0; k < 3; ++k) {
+    const S given = body.velocity[k] - drive.base[k];
+    drive.base[k] = clamp(mulAdd(body.velocity[k], drive.kept, drive.push[k]), -kLimits[k], kLimits[k]);
+    body.velocity[k] = drive.base[k] + given;
   }
 }
 
 template <Scalar S>
-void SoftSolver<S>::integratePositions() {
+void SoftSolver<S>::integratePosition(SoftBody<Numbers>& body) const {
   const S half = ratio<S>(1, 2);
   const S most = ratio<S>(1, 8);
-  for (SoftBody<S>& body : bodies) {
-    for (int k = 0; k < 3; ++k) {
-      body.moved[k] = mulAdd(body.velocity[k], constants.substep, body.moved[k]);
-    }
-    // Beyond half a radian the bend is no longer a parabola; the contact is found anew next step.
-    body.moved[3] = min(body.moved[2] * body.moved[2] * half, most);
-  }
+  for (int k = 0; k < 3; ++k) body.moved[k] = mulAdd(body.velocity[k], constants.substep, body.moved[k]);
+  // Beyond half a radian the bend is no longer a parabola; the contact is found anew next step.
+  body.moved[3] = min(body.moved[2] * body.moved[2] * half, most);
 }
 
 template <Scalar S>
@@ -190,10 +246,10 @@ void SoftSolver<S>::bounce() {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     Block& block = blocks[i];
     if (block.bounces == 0) continue;
-    BlockRest<S>& rest = rests[i];
+    Rest& rest = rests[i];
     for (int lane = 0; lane < kBlockLanes; ++lane) {
-      SoftBody<S>& a = bodies[block.bodyA[lane]];
-      SoftBody<S>& b = bodies[block.bodyB[lane]];
+      SoftBody<Numbers>& a = bodies[block.bodyA[lane]];
+      SoftBody<Numbers>& b = bodies[block.bodyB[lane]];
       for (int k = 0; k < block.count[lane]; ++k) {
         auto& axis = block.point[k].normal;
         if (rest.bounce[k][lane] == S(0) || rest.normalTotal[k][lane] == S(0)) continue;
@@ -208,11 +264,11 @@ void SoftSolver<S>::bounce() {
         rest.normalTotal[k][lane] += change;
         if ((block.fixedA >> lane & 1) == 0) {
           give(a.velocity, block.shareA[lane], -(n.x * change), -(n.y * change),
-               -(block.momentA[lane] * axis.armA[lane] * change));
+               -(spinA(block, axis, lane) * change));
         }
         if ((block.fixedB >> lane & 1) == 0) {
           give(b.velocity, S(1) - block.shareA[lane], n.x * change, n.y * change,
-               block.momentB[lane] * axis.armB[lane] * change);
+               spinB(block, axis, lane) * change);
         }
       }
     }
@@ -223,9 +279,9 @@ template <Scalar S>
 void SoftSolver<S>::store(std::vector<Pair<S>>& pairs) const {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Block& block = blocks[i];
-    const BlockRest<S>& rest = rests[i];
+    const Rest& rest = rests[i];
     for (int lane = 0; lane < kBlockLanes; ++lane) {
-      if (rest.pair[lane] == BlockRest<S>::kNoPair) continue;
+      if (rest.pair[lane] == Rest::kNoPair) continue;
       // The lighter body has the larger share.
       const S lighter = max(block.shareA[lane], S(1) - block.shareA[lane]);
       Pair<S>& pair = pairs[rest.pair[lane]];

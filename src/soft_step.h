@@ -18,40 +18,51 @@ namespace samestep {
 template <Scalar S>
 Softness<S> makeSoftness(S hertz, S dampingRatio, S substep);
 
-/// Whether the kernels of a scalar keep what saves them a product.
+/// What the solver's blocks hold for a scalar.
 template <Scalar S>
-inline constexpr bool kStoresSpins = !ScalarTraits<S>::kCheapProducts;
+using SolverNumbers = PlainNumbers<S, !ScalarTraits<S>::kCheapProducts>;
 
 template <Scalar S>
 struct SoftSolver {
-  using Block = ContactBlock<S, kStoresSpins<S>>;
+  using Numbers = SolverNumbers<S>;
+  using Block = ContactBlock<Numbers>;
+  using Rest = BlockRest<Numbers>;
 
-  std::vector<SoftBody<S>> bodies;
-  std::vector<SoftDrive<S>> drives;
+  /// Those that touch something; the first stands for all that never move.
+  std::vector<SoftBody<Numbers>> bodies;
+  std::vector<SoftDrive<Numbers>> drives;
+  /// Those that touch nothing, after the step.
+  std::vector<SoftBody<Numbers>> freeBodies;
   std::vector<Block> blocks;
-  std::vector<BlockRest<S>> rests;
-  SoftConstants<S> constants{};
-  ContactPasses<S, kStoresSpins<S>> passes;
+  std::vector<Rest> rests;
+  SoftConstants<Numbers> constants{};
+  ContactPasses<Numbers> passes;
 
   SoftSolver();
 
+  /// Forgets the last step.
+  void clear();
+  /// Adds a body that touches something, and says as which.
+  std::uint32_t addBody(const Body<S>& body, const SoftDrive<Numbers>& drive);
+  /// Makes all substeps of a body that touches nothing.
+  void addFree(const Body<S>& body, const SoftDrive<Numbers>& drive, int substeps);
   /// Adds an empty block.
   void openBlock();
   /// Puts a pair into a lane of the last block and gives its kept impulses to the bodies.
   void addPair(int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
                std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA, bool roundB,
                S bounceThreshold);
-  /// One substep.
-  void step();
+  /// Makes all substeps.
+  void run(int substeps);
   /// After the last one: what bounces.
   void bounce();
   /// Writes the impulses back.
   void store(std::vector<Pair<S>>& pairs) const;
 
  private:
-  void integrateVelocities();
-  void integratePositions();
-  void pass(ContactPass<S, kStoresSpins<S>> kernel);
+  void integrateVelocity(SoftBody<Numbers>& body, SoftDrive<Numbers>& drive) const;
+  void integratePosition(SoftBody<Numbers>& body) const;
+  void pass(ContactPass<Numbers> kernel);
 };
 
 #ifndef SAMESTEP_FIXED_ONLY

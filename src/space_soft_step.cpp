@@ -19,13 +19,34 @@ void Space<S>::softPreStep(S dt) {
                     perSubstep,
                     settings.contactPushSpeed,
                     kMaxSum<S>};
+  softFindGroups();
   softTakeBodies(dt);
   softTakePairs();
   endStage(Stage::preStep);
 }
 
-/// Makes the solver's bodies, by rising slot, so that what was added together is near in memory. The first
-/// stands for all that never move.
+/// Sorts the pairs to be solved into groups that share no body, and marks their bodies.
+template <Scalar S>
+void Space<S>::softFindGroups() {
+  Impl& impl = *impl_;
+  impl.groups.clear(state_.bodies.slots());
+  impl.solvedPairs.clear();
+  impl.solverIndex.assign(state_.bodies.slots(), Impl::kNone);
+  for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
+    const Pair<S>& pair = state_.pairs[i];
+    if (pair.solved == 0) continue;
+    const std::uint32_t a = state_.shapes.valueAt(pair.a.index).body().index;
+    const std::uint32_t b = state_.shapes.valueAt(pair.b.index).body().index;
+    impl.solverIndex[a] = impl.solverIndex[b] = 0;
+    impl.solvedPairs.push_back(i);
+    impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic(),
+                    pair.count == 1);
+  }
+  impl.groups.sort(impl.groupOrder);
+}
+
+/// Makes the solver's bodies, by rising slot, so that what was added together is near in memory: the first
+/// stands for all that never move, and those that touch nothing make their substeps by themselves.
 template <Scalar S>
 void Space<S>::softTakeBodies(S dt) {
   Impl& impl = *impl_;
@@ -33,14 +54,11 @@ void Space<S>::softTakeBodies(S dt) {
   const S substep = soft.constants.substep;
   const S keptInSubstep = damping() == S(1) ? S(1) : pow(damping(), substep);
   const S keptInStep = damping() == S(1) ? S(1) : pow(damping(), dt);
-  impl.solverBodies.assign(1, Impl::kNone);
-  impl.solverIndex.assign(state_.bodies.slots(), 0);
-  soft.bodies.assign(1, {});
-  soft.drives.assign(1, {});
+  soft.clear();
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
     Body<S>& body = state_.bodies.valueAt(i);
-    SoftDrive<S> drive{};
+    SoftDrive<SolverNumbers<S>> drive{};
     drive.kept = S(1);
     if (body.type() == BodyType::staticBody) {
       // Nothing moves it, and no function is asked to.
@@ -56,13 +74,11 @@ void Space<S>::softTakeBodies(S dt) {
     body.force_ = {};
     body.torque_ = S(0);
     if (body.type() == BodyType::staticBody) continue;
-    impl.solverIndex[i] = static_cast<std::uint32_t>(impl.solverBodies.size());
-    impl.solverBodies.push_back(i);
-    drive.base[0] = body.velocity_.x;
-    drive.base[1] = body.velocity_.y;
-    drive.base[2] = body.angularVelocity_;
-    soft.bodies.push_back({{body.velocity_.x, body.velocity_.y, body.angularVelocity_, S(0)}, {}});
-    soft.drives.push_back(drive);
+    if (impl.solverIndex[i] == Impl::kNone) {
+      soft.addFree(body, drive, state_.settings.substeps);
+    } else {
+      impl.solverIndex[i] = soft.addBody(body, drive);
+    }
   }
 }
 
@@ -71,22 +87,7 @@ template <Scalar S>
 void Space<S>::softTakePairs() {
   Impl& impl = *impl_;
   SoftSolver<S>& soft = impl.soft;
-  const auto bodyIndex = [&](ShapeId id) { return state_.shapes.valueAt(id.index).body().index; };
-  const auto round = [&](ShapeId id) { return state_.shapes.valueAt(id.index).type() == ShapeType::circle; };
-  impl.groups.clear(state_.bodies.slots());
-  impl.solvedPairs.clear();
-  for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
-    const Pair<S>& pair = state_.pairs[i];
-    if (pair.solved == 0) continue;
-    const std::uint32_t a = bodyIndex(pair.a);
-    const std::uint32_t b = bodyIndex(pair.b);
-    impl.solvedPairs.push_back(i);
-    impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic(),
-                    pair.count == 1);
-  }
-  impl.groups.sort(impl.groupOrder);
-  soft.blocks.clear();
-  soft.rests.clear();
+  const auto round = [](const Shape<S>& shape) { return shape.type() == ShapeType::circle; };
   std::uint32_t next = 0;
   for (std::uint32_t group = 0; group < ContactGroups::kGroups; ++group) {
     // The pairs of the last group may share bodies.
@@ -99,10 +100,12 @@ void Space<S>::softTakePairs() {
       }
       const std::uint32_t index = impl.solvedPairs[impl.groupOrder[next]];
       const Pair<S>& pair = state_.pairs[index];
-      const std::uint32_t a = bodyIndex(pair.a);
-      const std::uint32_t b = bodyIndex(pair.b);
+      const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
+      const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
+      const std::uint32_t a = shapeA.body().index;
+      const std::uint32_t b = shapeB.body().index;
       soft.addPair(lane, pair, index, impl.solverIndex[a], impl.solverIndex[b], state_.bodies.valueAt(a),
-                   state_.bodies.valueAt(b), round(pair.a), round(pair.b), state_.settings.bounceThreshold);
+                   state_.bodies.valueAt(b), round(shapeA), round(shapeB), state_.settings.bounceThreshold);
     }
   }
 }
@@ -110,7 +113,13 @@ void Space<S>::softTakePairs() {
 template <Scalar S>
 void Space<S>::softSolve() {
   SoftSolver<S>& soft = impl_->soft;
-  for (int i = 0; i < state_.settings.substeps; ++i) soft.step();
+  const int substeps = state_.settings.substeps;
+  bool solved = false;
+  if (state_.settings.precision == ContactPrecision::fast && !soft.blocks.empty()) {
+    solved = impl_->fast.run(soft, substeps);
+    if (!solved) ++accurateInstead_;
+  }
+  if (!solved) soft.run(substeps);
   soft.bounce();
   soft.store(state_.pairs);
   endStage(Stage::solve);
@@ -119,19 +128,20 @@ void Space<S>::softSolve() {
 template <Scalar S>
 void Space<S>::softFinish(S dt) {
   Impl& impl = *impl_;
-  for (std::size_t i = 1; i < impl.solverBodies.size(); ++i) {
-    const std::uint32_t index = impl.solverBodies[i];
-    Body<S>& body = state_.bodies.valueAt(index);
-    const SoftBody<S>& solved = impl.soft.bodies[i];
+  std::size_t nextFree = 0;
+  for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
+    if (!state_.bodies.aliveAt(i)) continue;
+    Body<S>& body = state_.bodies.valueAt(i);
+    if (body.type() == BodyType::staticBody) continue;
+    const std::uint32_t index = impl.solverIndex[i];
+    const auto& solved = index == Impl::kNone ? impl.soft.freeBodies[nextFree++] : impl.soft.bodies[index];
     if (body.isDynamic()) {
-      impl.held[index] |=
-          body.holdVelocity({{solved.velocity[0], solved.velocity[1]}, solved.velocity[2]});
+      impl.held[i] |= body.holdVelocity({{solved.velocity[0], solved.velocity[1]}, solved.velocity[2]});
     }
     if (body.positionFunc() != 0) [[unlikely]] {
-      callPositionFunc(index, dt);
+      callPositionFunc(i, dt);
     } else {
-      impl.held[index] |=
-          body.holdMoved({solved.moved[0], solved.moved[1]}, solved.moved[2], worldExtent());
+      impl.held[i] |= body.holdMoved({solved.moved[0], solved.moved[1]}, solved.moved[2], worldExtent());
     }
   }
   endStage(Stage::integratePositions);

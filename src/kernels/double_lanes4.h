@@ -13,8 +13,6 @@ struct FourDoubles {
 
 /// Four at a time: AVX2.
 struct DoubleLanes4 : DoubleLanes<FourDoubles> {
-  using Body = SoftBody<double>;
-
   [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
                                                     V& turn) {
     V none;

@@ -7,7 +7,6 @@
 
 namespace samestep::kernels {
 
-const ContactPasses<double, false> doubleBy2 = {passOver<DoubleLanes2, true, ContactBlock<double, false>>,
-                                                passOver<DoubleLanes2, false, ContactBlock<double, false>>};
+const ContactPasses<PlainNumbers<double, false>> doubleBy2 = kPassesOf<DoubleLanes2>;
 
 }  // namespace samestep::kernels

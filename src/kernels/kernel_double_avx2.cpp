@@ -10,21 +10,14 @@
 #include "solve_contacts.h"
 
 namespace samestep::kernels {
-namespace {
 
-constexpr ContactPasses<double, false> kPasses = {
-    passOver<DoubleLanes4, true, ContactBlock<double, false>>,
-    passOver<DoubleLanes4, false, ContactBlock<double, false>>};
-
-}  // namespace
-
-const ContactPasses<double, false>* const doubleAvx2 = &kPasses;
+const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2 = &kPassesOf<DoubleLanes4>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<double, false>* const doubleAvx2 = nullptr;
+const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

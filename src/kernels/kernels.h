@@ -3,12 +3,18 @@
 
 #include "contact_block.h"
 
-/// The kernels that were built, by number type. Each gives the same bits.
+/// The kernels that were built, by what they compute with. All of one kind give the same bits. A pointer is
+/// null where the compiler does not know the processor's instructions; only a processor that has them may be
+/// sent there.
 namespace samestep::kernels {
 
-/// Two doubles at a time, on every machine.
-extern const ContactPasses<double, false> doubleBy2;
-/// Four doubles at a time; null where the compiler has no AVX2.
-extern const ContactPasses<double, false>* const doubleAvx2;
+/// Two doubles at a time, in vectors that every compiler translates.
+extern const ContactPasses<PlainNumbers<double, false>> doubleBy2;
+extern const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2;
+
+/// One integer at a time.
+extern const ContactPasses<FastNumbers> fastBy1;
+extern const ContactPasses<FastNumbers>* const fastSse42;
+extern const ContactPasses<FastNumbers>* const fastAvx2;
 
 }  // namespace samestep::kernels

@@ -11,14 +11,15 @@ namespace samestep {
 /// One at a time, in any scalar, with its own products.
 template <Scalar S>
 struct ScalarLanes {
-  using T = S;
   using V = S;
-  using Body = SoftBody<S>;
+  using Numbers = PlainNumbers<S, true>;
+  using Body = SoftBody<Numbers>;
   static constexpr int kWidth = 1;
 
   static V zero() { return S(0); }
-  static S one() { return S(1); }
+  static V whole() { return S(1); }
   static V all(S x) { return x; }
+  static V allSum(S x) { return x; }
   static V load(const S* from) { return *from; }
   static void store(S* to, V v) { *to = v; }
   static V select(bool mask, V a, V b) { return mask ? a : b; }
@@ -29,14 +30,24 @@ struct ScalarLanes {
   static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
     return dot4(a0, b0, a1, b1, a2, b2, a3, b3);
   }
+  static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
+  static V product(V a, V b) { return a * b; }
+  static V frictionLimit(V friction, V sum) { return friction * sum; }
+  static V rate(V way, V rate) { return way * rate; }
   template <class Axis>
-  static V spinA(const Axis& axis, int lane, V, V, V change) {
+  static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, V, V change) {
     return axis.spinA[lane] * change;
   }
   template <class Axis>
-  static V spinB(const Axis& axis, int lane, V, V, V change) {
+  static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, V, V change) {
     return axis.spinB[lane] * change;
   }
+  static V soften(const Softness<S>& soft, V full, V before) {
+    return dot(soft.massScale, full, soft.impulseScale, before);
+  }
+  /// Its ranges are kept by contract, see docs/ranges.md.
+  static V checked(V v) { return v; }
+  static std::uint64_t left() { return 0; }
   static void note(const char* name, V v) { highWater<S>(name, v); }
 
   static V unless(std::uint8_t bits, int lane, V v) { return (bits >> lane & 1) != 0 ? S(0) : v; }

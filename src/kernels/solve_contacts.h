@@ -4,7 +4,7 @@
 #include "contact_block.h"
 
 /// The pass over contact blocks, written once for every kernel. `L` says what a group of lanes is: its vector
-/// V of kWidth numbers T and the operations on it. All of it has internal linkage, since each kernel is built
+/// V of kWidth numbers and the operations on it. All of it has internal linkage, since each kernel is built
 /// with flags of its own.
 namespace samestep {
 namespace {
@@ -17,10 +17,10 @@ struct LaneMotion {
 
 /// One pair of each lane: friction of all points against the normal impulses so far, then the normals, which
 /// have the last word.
-template <class L, bool kSprings, class Block>
-[[gnu::always_inline]] inline void solveLanes(Block& block, BlockRest<typename L::T>& rest, int lane,
-                                              SoftBody<typename L::T>* bodies,
-                                              const SoftConstants<typename L::T>& constants) {
+template <class L, bool kSprings, class N = typename L::Numbers>
+[[gnu::always_inline]] inline void solveLanes(ContactBlock<N>& block, BlockRest<N>& rest, int lane,
+                                              SoftBody<N>* bodies, const SoftConstants<N>& constants,
+                                              L& lanes) {
   using V = typename L::V;
   LaneMotion<L> velocityA, velocityB, movedA, movedB;
   V bendA, bendB;
@@ -33,8 +33,6 @@ template <class L, bool kSprings, class Block>
 
   const V nx = L::load(block.normalX + lane);
   const V ny = L::load(block.normalY + lane);
-  const V momentA = L::load(block.momentA + lane);
-  const V momentB = L::load(block.momentB + lane);
   const V friction = L::load(block.friction + lane);
   const V dx = velocityB.x - velocityA.x;
   const V dy = velocityB.y - velocityA.y;
@@ -49,15 +47,15 @@ template <class L, bool kSprings, class Block>
     const V armA = L::load(axis.armA + lane);
     const V armB = L::load(axis.armB + lane);
     const V before = L::load(axis.sum + lane);
-    const V limit = friction * L::load(block.point[i].normal.sum + lane);
-    const V speed = tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
-    const V sum = L::within(before - L::load(axis.mass + lane) * speed, -limit, limit);
+    const V limit = L::frictionLimit(friction, L::load(block.point[i].normal.sum + lane));
+    const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
+    const V sum = L::within(before - L::product(L::load(axis.mass + lane), speed), -limit, limit);
     L::store(axis.sum + lane, sum);
-    const V change = sum - before;
+    const V change = lanes.checked(sum - before);
     tangentSpeed = tangentSpeed + change;
     tangentPart = tangentPart + change;
-    velocityA.turn = velocityA.turn - L::spinA(axis, lane, momentA, armA, change);
-    velocityB.turn = velocityB.turn + L::spinB(axis, lane, momentB, armB, change);
+    velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
+    velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
     L::note("soft step: friction limit", limit);
     L::note("soft step: relative speed", speed);
     if constexpr (!kSprings) {
@@ -72,31 +70,33 @@ template <class L, bool kSprings, class Block>
     const V armB = L::load(axis.armB + lane);
     const V before = L::load(axis.sum + lane);
     // The arms of the tangent are r . n: how far a bend comes nearer.
-    const V separation = L::load(block.point[i].separation + lane) + apart +
-                         L::dotOf4(armB, movedB.turn, -armA, movedA.turn,  //
-                                 L::load(block.point[i].tangent.armA + lane), bendA,
-                                 -L::load(block.point[i].tangent.armB + lane), bendB);
+    const V separation =
+        L::near(L::load(block.point[i].separation + lane) + apart +
+                    L::dotOf4(armB, movedB.turn, -armA, movedA.turn,  //
+                              L::load(block.point[i].tangent.armA + lane), bendA,
+                              -L::load(block.point[i].tangent.armB + lane), bendB),
+                constants);
     // Not touching yet: may come as near as it is within this substep.
-    const V gap = separation * L::all(constants.perSubstep);
+    const V gap = L::rate(separation, constants.perSubstep);
     const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
     V correction;
     if constexpr (kSprings) {
       const auto soft = L::softness(block.stiff, lane, constants.softness);
       const auto free = separation > L::zero();
-      const V push = L::greater(separation * soft.biasRate, L::all(-constants.pushSpeed));
+      const V push = L::greater(L::rate(separation, soft.biasRate), L::all(-constants.pushSpeed));
       const V target = L::select(free, gap, push);
-      const V full = L::load(axis.mass + lane) * (speed + target);
-      correction = L::select(free, full, L::dot2(soft.massScale, full, soft.impulseScale, before));
+      const V full = L::product(L::load(axis.mass + lane), lanes.checked(speed + target));
+      correction = L::select(free, full, L::soften(soft, full, before));
     } else {
-      correction = L::load(axis.mass + lane) * (speed + L::greater(gap, L::zero()));
+      correction = L::product(L::load(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
     }
-    const V sum = L::within(before - correction, L::zero(), L::all(constants.mostSum));
+    const V sum = L::within(before - correction, L::zero(), L::allSum(constants.mostSum));
     L::store(axis.sum + lane, sum);
-    const V change = sum - before;
+    const V change = lanes.checked(sum - before);
     normalSpeed = normalSpeed + change;
     normalPart = normalPart + change;
-    velocityA.turn = velocityA.turn - L::spinA(axis, lane, momentA, armA, change);
-    velocityB.turn = velocityB.turn + L::spinB(axis, lane, momentB, armB, change);
+    velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
+    velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
     L::note("soft step: relative speed", speed);
     L::note("soft step: target speed", gap);
     if constexpr (!kSprings) {
@@ -104,26 +104,35 @@ template <class L, bool kSprings, class Block>
     }
   }
 
+  normalPart = lanes.checked(normalPart);
+  tangentPart = lanes.checked(tangentPart);
   const V x = L::cross2(nx, normalPart, ny, tangentPart);
   const V y = L::dot2(ny, normalPart, nx, tangentPart);
   const V shareA = L::load(block.shareA + lane);
-  const V shareB = L::all(L::one()) - shareA;
-  L::scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane, velocityA.x - shareA * x,
-                     velocityA.y - shareA * y, velocityA.turn);
-  L::scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane, velocityB.x + shareB * x,
-                     velocityB.y + shareB * y, velocityB.turn);
+  const V shareB = L::whole() - shareA;
+  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane,
+                        velocityA.x - L::product(shareA, x), velocityA.y - L::product(shareA, y),
+                        velocityA.turn);
+  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane,
+                        velocityB.x + L::product(shareB, x), velocityB.y + L::product(shareB, y),
+                        velocityB.turn);
 }
 
-template <class L, bool kSprings, class Block>
-void passOver(Block* blocks, BlockRest<typename L::T>* rests, std::uint32_t count,
-              SoftBody<typename L::T>* bodies, const SoftConstants<typename L::T>& constants) {
+template <class L, bool kSprings, class N = typename L::Numbers>
+std::uint64_t passOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32_t count, SoftBody<N>* bodies,
+                       const SoftConstants<N>& constants) {
+  L lanes;
   for (std::uint32_t i = 0; i < count; ++i) {
     for (int lane = 0; lane < kBlockLanes; lane += L::kWidth) {
       if (L::kWidth == 1 && blocks[i].count[lane] == 0) break;
-      solveLanes<L, kSprings>(blocks[i], rests[i], lane, bodies, constants);
+      solveLanes<L, kSprings>(blocks[i], rests[i], lane, bodies, constants, lanes);
     }
   }
+  return lanes.left();
 }
+
+template <class L>
+inline constexpr ContactPasses<typename L::Numbers> kPassesOf = {passOver<L, true>, passOver<L, false>};
 
 }  // namespace
 }  // namespace samestep
