@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-/// The records that the soft step's kernels work on. Plain arrays: a kernel built for one processor must share
-/// no inline function with the rest of the library.
+/// The records that the soft step's kernels work on. Plain arrays: a kernel built for one processor must
+/// share no inline function with the rest of the library.
 namespace samestep {
 
 /// Pairs side by side in a block: as many as the widest kernel takes at once.
@@ -21,8 +21,8 @@ struct PlainNumbers {
 };
 
 /// Integers of 32 bits in units of powers of two, sums of 64 bits. Speeds and impulses have one unit for the
-/// whole step, chosen by the fastest body, and ways another; a body's turning is kept as the way of a point at
-/// its radius, a power of two no less than the arms of its contacts.
+/// whole step, chosen by the fastest body, and ways another; a body's turning is kept as the way of a point
+/// at its radius, a power of two no less than the arms of its contacts.
 struct FastNumbers {
   using Coefficient = std::int32_t;
   using Speed = std::int32_t;

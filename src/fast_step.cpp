@@ -67,10 +67,10 @@ void FastSolver<S>::chooseScales(const Solver& solver, int substeps) {
     for (int lane = 0; lane < kBlockLanes; ++lane) {
       for (int i = 0; i < block.count[lane]; ++i) {
         const auto& point = block.point[i];
-        reach_[block.bodyA[lane]] |= raw::magnitude(point.normal.armA[lane].raw()) |
-                                    raw::magnitude(point.tangent.armA[lane].raw());
-        reach_[block.bodyB[lane]] |= raw::magnitude(point.normal.armB[lane].raw()) |
-                                    raw::magnitude(point.tangent.armB[lane].raw());
+        reach_[block.bodyA[lane]] |=
+            raw::magnitude(point.normal.armA[lane].raw()) | raw::magnitude(point.tangent.armA[lane].raw());
+        reach_[block.bodyB[lane]] |=
+            raw::magnitude(point.normal.armB[lane].raw()) | raw::magnitude(point.tangent.armB[lane].raw());
       }
     }
   }

@@ -254,9 +254,8 @@ void SoftSolver<S>::bounce() {
         auto& axis = block.point[k].normal;
         if (rest.bounce[k][lane] == S(0) || rest.normalTotal[k][lane] == S(0)) continue;
         const Vector<S> n(block.normalX[lane], block.normalY[lane]);
-        const S speed =
-            dot(n.x, b.velocity[0] - a.velocity[0], n.y, b.velocity[1] - a.velocity[1]) +
-            cross(axis.armB[lane], b.velocity[2], axis.armA[lane], a.velocity[2]);
+        const S speed = dot(n.x, b.velocity[0] - a.velocity[0], n.y, b.velocity[1] - a.velocity[1]) +
+                        cross(axis.armB[lane], b.velocity[2], axis.armA[lane], a.velocity[2]);
         const S before = axis.sum[lane];
         axis.sum[lane] =
             clamp(before + axis.mass[lane] * (rest.bounce[k][lane] - speed), S(0), constants.mostSum);

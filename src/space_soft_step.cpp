@@ -18,7 +18,8 @@ void Space<S>::softPreStep(S dt) {
                     substep,
                     perSubstep,
                     settings.contactPushSpeed,
-                    kMaxSum<S>};
+                    kMaxSum<S>,
+                    S(0)};
   softFindGroups();
   softTakeBodies(dt);
   softTakePairs();

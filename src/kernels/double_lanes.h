@@ -64,7 +64,7 @@ struct DoubleLanes {
     return soft.massScale * full + soft.impulseScale * before;
   }
   [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane,
-                                                      const Softness<double>* of) {
+                                                     const Softness<double>* of) {
     const M mask = DoubleLanes::mask(stiff, lane);
     return {select(mask, all(of[1].biasRate), all(of[0].biasRate)),
             select(mask, all(of[1].massScale), all(of[0].massScale)),
@@ -74,10 +74,10 @@ struct DoubleLanes {
  private:
   static constexpr std::int64_t kIn = -1;
   alignas(32) static constexpr std::int64_t kMasks[16][kBlockLanes] = {
-      {0, 0, 0, 0},       {kIn, 0, 0, 0},     {0, kIn, 0, 0},     {kIn, kIn, 0, 0},
-      {0, 0, kIn, 0},     {kIn, 0, kIn, 0},   {0, kIn, kIn, 0},   {kIn, kIn, kIn, 0},
-      {0, 0, 0, kIn},     {kIn, 0, 0, kIn},   {0, kIn, 0, kIn},   {kIn, kIn, 0, kIn},
-      {0, 0, kIn, kIn},   {kIn, 0, kIn, kIn}, {0, kIn, kIn, kIn}, {kIn, kIn, kIn, kIn},
+      {0, 0, 0, 0},     {kIn, 0, 0, 0},     {0, kIn, 0, 0},     {kIn, kIn, 0, 0},
+      {0, 0, kIn, 0},   {kIn, 0, kIn, 0},   {0, kIn, kIn, 0},   {kIn, kIn, kIn, 0},
+      {0, 0, 0, kIn},   {kIn, 0, 0, kIn},   {0, kIn, 0, kIn},   {kIn, kIn, 0, kIn},
+      {0, 0, kIn, kIn}, {kIn, 0, kIn, kIn}, {0, kIn, kIn, kIn}, {kIn, kIn, kIn, kIn},
   };
 };
 

@@ -19,8 +19,7 @@ struct FourIntegers {
     return widened(_mm_load_si128(reinterpret_cast<const __m128i*>(from)));
   }
   [[gnu::always_inline]] static V multiply(V a, V b) {
-    return reinterpret_cast<V>(
-        _mm256_mul_epi32(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b)));
+    return reinterpret_cast<V>(_mm256_mul_epi32(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b)));
   }
   template <int kBits>
   [[gnu::always_inline]] static V rounded(V x) {
@@ -61,13 +60,11 @@ struct FourIntegers {
   }
 
  private:
-  [[gnu::always_inline]] static V widened(__m128i x) {
-    return reinterpret_cast<V>(_mm256_cvtepi32_epi64(x));
-  }
+  [[gnu::always_inline]] static V widened(__m128i x) { return reinterpret_cast<V>(_mm256_cvtepi32_epi64(x)); }
   /// The low half of each.
   [[gnu::always_inline]] static __m128i narrowed(V x) {
-    const __m256i packed = _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(x),
-                                                       _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6));
+    const __m256i packed =
+        _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(x), _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6));
     return _mm256_castsi256_si128(packed);
   }
   [[gnu::always_inline]] static void transpose(__m128i row[4]) {

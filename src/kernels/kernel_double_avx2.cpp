@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Built with -mavx2 where the compiler knows it: nothing here may be called before the processor was asked, and
-// nothing may be shared with other sources.
+// Built with -mavx2 where the compiler knows it: nothing here may be called before the processor was asked,
+// and nothing may be shared with other sources.
 #include "require_ieee.h"
 
 #include "kernels.h"

@@ -70,12 +70,11 @@ template <class L, bool kSprings, class N = typename L::Numbers>
     const V armB = L::load(axis.armB + lane);
     const V before = L::load(axis.sum + lane);
     // The arms of the tangent are r . n: how far a bend comes nearer.
-    const V separation =
-        L::near(L::load(block.point[i].separation + lane) + apart +
-                    L::dotOf4(armB, movedB.turn, -armA, movedA.turn,  //
-                              L::load(block.point[i].tangent.armA + lane), bendA,
-                              -L::load(block.point[i].tangent.armB + lane), bendB),
-                constants);
+    const V separation = L::near(L::load(block.point[i].separation + lane) + apart +
+                                     L::dotOf4(armB, movedB.turn, -armA, movedA.turn,  //
+                                               L::load(block.point[i].tangent.armA + lane), bendA,
+                                               -L::load(block.point[i].tangent.armB + lane), bendB),
+                                 constants);
     // Not touching yet: may come as near as it is within this substep.
     const V gap = L::rate(separation, constants.perSubstep);
     const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
@@ -110,12 +109,10 @@ template <class L, bool kSprings, class N = typename L::Numbers>
   const V y = L::dot2(ny, normalPart, nx, tangentPart);
   const V shareA = L::load(block.shareA + lane);
   const V shareB = L::whole() - shareA;
-  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane,
-                        velocityA.x - L::product(shareA, x), velocityA.y - L::product(shareA, y),
-                        velocityA.turn);
-  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane,
-                        velocityB.x + L::product(shareB, x), velocityB.y + L::product(shareB, y),
-                        velocityB.turn);
+  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane, velocityA.x - L::product(shareA, x),
+                        velocityA.y - L::product(shareA, y), velocityA.turn);
+  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane, velocityB.x + L::product(shareB, x),
+                        velocityB.y + L::product(shareB, y), velocityB.turn);
 }
 
 template <class L, bool kSprings, class N = typename L::Numbers>
