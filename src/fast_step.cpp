@@ -63,7 +63,8 @@ bool FastSolver<S>::run(Solver& solver, int substeps) {
 template <class S>
 void FastSolver<S>::chooseScales(const Solver& solver, int substeps) {
   reach_.assign(solver.bodies.size(), 0);
-  for (const auto& block : solver.blocks) {
+  for (std::uint32_t n = 0; n < solver.blockCount; ++n) {
+    const auto& block = solver.blocks[n];
     for (int lane = 0; lane < kBlockLanes; ++lane) {
       for (int i = 0; i < block.count[lane]; ++i) {
         const auto& point = block.point[i];
@@ -138,7 +139,7 @@ void FastSolver<S>::takeBodies(const Solver& solver) {
 
 template <class S>
 bool FastSolver<S>::takeBlocks(const Solver& solver) {
-  const std::size_t count = solver.blocks.size();
+  const std::size_t count = solver.blockCount;
   blocks_.resize(count);
   rests_.assign(count, {});
   std::int64_t misfit = 0;

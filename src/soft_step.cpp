@@ -70,9 +70,9 @@ template <Scalar S>
 void SoftSolver<S>::clear() {
   bodies.assign(1, {});
   drives.assign(1, {});
+  momentsPerMass.assign(1, S(0));
   freeBodies.clear();
-  blocks.clear();
-  rests.clear();
+  blockCount = 0;
 }
 
 namespace {
@@ -84,6 +84,38 @@ void start(SoftBody& to, const Body<S>& body) {
   to.velocity[2] = body.angularVelocity();
 }
 
+template <class N>
+void clearAxis(BlockAxis<N>& axis, int lane) {
+  using Coefficient = typename N::Coefficient;
+  axis.armA[lane] = axis.armB[lane] = axis.mass[lane] = Coefficient(0);
+  axis.sum[lane] = typename N::Sum(0);
+  if constexpr (N::kStoresSpins) axis.spinA[lane] = axis.spinB[lane] = Coefficient(0);
+}
+
+/// A point that changes nothing.
+template <class N>
+void clearPoint(ContactBlock<N>& block, BlockRest<N>& rest, int lane, int point) {
+  clearAxis(block.point[point].normal, lane);
+  clearAxis(block.point[point].tangent, lane);
+  block.point[point].separation[lane] = typename N::Coefficient(0);
+  rest.normalTotal[point][lane] = rest.tangentTotal[point][lane] = rest.bounce[point][lane] =
+      typename N::Sum(0);
+}
+
+/// As respond(), from the bodies' own moments by mass.
+template <Scalar S>
+PairResponse<S> respondWith(const Body<S>& a, S momentPerMassA, const Body<S>& b, S momentPerMassB) {
+  const Scaled<S> none{};
+  if (b.inverseMass() == none) return {S(1), S(0), momentPerMassA, S(0)};
+  if (a.inverseMass() == none) return {S(0), S(1), S(0), momentPerMassB};
+  if (a.inverseMass() == b.inverseMass()) return {S(1), S(1), momentPerMassA, momentPerMassB};
+  const bool aIsLighter = a.inverseMass() > b.inverseMass();
+  const S heavy = aIsLighter ? toScalar<S>(b.inverseMass() * toScaled(a.mass()))
+                             : toScalar<S>(a.inverseMass() * toScaled(b.mass()));
+  if (aIsLighter) return {S(1), heavy, momentPerMassA, momentPerMassB * heavy};
+  return {heavy, S(1), momentPerMassA * heavy, momentPerMassB};
+}
+
 }  // namespace
 
 template <Scalar S>
@@ -92,6 +124,7 @@ std::uint32_t SoftSolver<S>::addBody(const Body<S>& body, const SoftDrive<Number
   start(added, body);
   SoftDrive<Numbers>& kept = drives.emplace_back(drive);
   for (int k = 0; k < 3; ++k) kept.base[k] = added.velocity[k];
+  momentsPerMass.push_back(momentPerMass(body));
   return static_cast<std::uint32_t>(bodies.size() - 1);
 }
 
@@ -110,24 +143,46 @@ void SoftSolver<S>::addFree(const Body<S>& body, const SoftDrive<Numbers>& drive
 
 template <Scalar S>
 void SoftSolver<S>::openBlock() {
-  Block& block = blocks.emplace_back();
-  block.fixedA = block.fixedB = (1 << kBlockLanes) - 1;
-  Rest& rest = rests.emplace_back();
-  for (std::uint32_t& pair : rest.pair) pair = Rest::kNoPair;
+  if (blockCount == blocks.size()) {
+    blocks.emplace_back();
+    rests.emplace_back();
+  }
+  Block& block = blocks[blockCount++];
+  block.points = block.bounces = block.roundA = block.roundB = block.stiff = 0;
+  block.fixedA = block.fixedB = 0;
+}
+
+template <Scalar S>
+void SoftSolver<S>::closeBlock(int lanes) {
+  Block& block = blocks[blockCount - 1];
+  Rest& rest = rests[blockCount - 1];
+  for (int lane = lanes; lane < kBlockLanes; ++lane) {
+    const auto bit = static_cast<std::uint8_t>(1 << lane);
+    block.fixedA = static_cast<std::uint8_t>(block.fixedA | bit);
+    block.fixedB = static_cast<std::uint8_t>(block.fixedB | bit);
+    block.bodyA[lane] = block.bodyB[lane] = 0;
+    block.count[lane] = 0;
+    block.normalX[lane] = block.normalY[lane] = block.shareA[lane] = S(0);
+    block.friction[lane] = block.surface[lane] = S(0);
+    if constexpr (!Numbers::kStoresSpins) block.moments.momentA[lane] = block.moments.momentB[lane] = S(0);
+    rest.pair[lane] = Rest::kNoPair;
+    for (int i = 0; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, lane, i);
+  }
 }
 
 template <Scalar S>
 void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
                             std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA,
                             bool roundB, S bounceThreshold) {
-  Block& block = blocks.back();
-  Rest& rest = rests.back();
-  const PairResponse<S> response = respond(a, b);
+  Block& block = blocks[blockCount - 1];
+  Rest& rest = rests[blockCount - 1];
+  const PairResponse<S> response = respondWith(a, momentsPerMass[indexA], b, momentsPerMass[indexB]);
   const S masses = response.massA + response.massB;
-  const S perMass = reciprocal(masses);
+  const bool alone = masses == S(1);
+  const S perMass = alone ? S(1) : masses == S(2) ? ratio<S>(1, 2) : reciprocal(masses);
   const auto bit = static_cast<std::uint8_t>(1 << lane);
   const auto mark = [&](std::uint8_t& bits, bool set) {
-    bits = static_cast<std::uint8_t>(set ? bits | bit : bits & ~bit);
+    if (set) bits = static_cast<std::uint8_t>(bits | bit);
   };
   const Vector<S> n = pair.normal;
   const Vector<S> t = perp(n);
@@ -192,14 +247,17 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
     normalPart += point.normal.sum[lane];
     tangentPart += point.tangent.sum[lane];
     point.separation[lane] = clamp(dot(contact.pointB - contact.pointA, n), S(-(1 << 10)), S(1 << 10));
+    rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = rest.bounce[i][lane] = S(0);
+    if (pair.elasticity == S(0)) continue;
     const Vector<S> dv = b.velocity() - a.velocity();
     const S approach = dot(n.x, dv.x, n.y, dv.y) + cross(point.normal.armB[lane], b.angularVelocity(),
                                                          point.normal.armA[lane], a.angularVelocity());
-    if (approach < -bounceThreshold && pair.elasticity > S(0)) {
+    if (approach < -bounceThreshold) {
       rest.bounce[i][lane] = -(pair.elasticity * approach);
       block.bounces = 1;
     }
   }
+  for (int i = pair.count; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, lane, i);
   const S x = cross(n.x, normalPart, n.y, tangentPart);
   const S y = dot(n.y, normalPart, n.x, tangentPart);
   if (a.isDynamic()) give(drives[indexA].base, block.shareA[lane], x, y, turnA);
@@ -208,7 +266,7 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
 
 template <Scalar S>
 void SoftSolver<S>::pass(ContactPass<Numbers> kernel) {
-  kernel(blocks.data(), rests.data(), static_cast<std::uint32_t>(blocks.size()), bodies.data(), constants);
+  kernel(blocks.data(), rests.data(), blockCount, bodies.data(), constants);
 }
 
 template <Scalar S>
@@ -243,7 +301,7 @@ void SoftSolver<S>::integratePosition(SoftBody<Numbers>& body) const {
 
 template <Scalar S>
 void SoftSolver<S>::bounce() {
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
+  for (std::uint32_t i = 0; i < blockCount; ++i) {
     Block& block = blocks[i];
     if (block.bounces == 0) continue;
     Rest& rest = rests[i];
@@ -276,7 +334,7 @@ void SoftSolver<S>::bounce() {
 
 template <Scalar S>
 void SoftSolver<S>::store(std::vector<Pair<S>>& pairs) const {
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
+  for (std::uint32_t i = 0; i < blockCount; ++i) {
     const Block& block = blocks[i];
     const Rest& rest = rests[i];
     for (int lane = 0; lane < kBlockLanes; ++lane) {

@@ -33,8 +33,12 @@ struct SoftSolver {
   std::vector<SoftDrive<Numbers>> drives;
   /// Those that touch nothing, after the step.
   std::vector<SoftBody<Numbers>> freeBodies;
+  /// The first blockCount are in use; the rest keep their memory.
   std::vector<Block> blocks;
   std::vector<Rest> rests;
+  std::uint32_t blockCount = 0;
+  /// Inverse moment times mass of each body, 1/m^2.
+  std::vector<S> momentsPerMass;
   SoftConstants<Numbers> constants{};
   ContactPasses<Numbers> passes;
 
@@ -46,8 +50,10 @@ struct SoftSolver {
   std::uint32_t addBody(const Body<S>& body, const SoftDrive<Numbers>& drive);
   /// Makes all substeps of a body that touches nothing.
   void addFree(const Body<S>& body, const SoftDrive<Numbers>& drive, int substeps);
-  /// Adds an empty block.
+  /// Adds a block, whose lanes hold anything.
   void openBlock();
+  /// Empties the lanes of the last block that hold no pair.
+  void closeBlock(int lanes);
   /// Puts a pair into a lane of the last block and gives its kept impulses to the bodies.
   void addPair(int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
                std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA, bool roundB,

@@ -107,6 +107,7 @@ void Space<S>::softTakePairs() {
       const std::uint32_t b = shapeB.body().index;
       soft.addPair(lane, pair, index, impl.solverIndex[a], impl.solverIndex[b], state_.bodies.valueAt(a),
                    state_.bodies.valueAt(b), round(shapeA), round(shapeB), state_.settings.bounceThreshold);
+      if (lane + 1 == lanes || next + 1 == end) soft.closeBlock(lane + 1);
     }
   }
 }
@@ -116,7 +117,7 @@ void Space<S>::softSolve() {
   SoftSolver<S>& soft = impl_->soft;
   const int substeps = state_.settings.substeps;
   bool solved = false;
-  if (state_.settings.precision == ContactPrecision::fast && !soft.blocks.empty()) {
+  if (state_.settings.precision == ContactPrecision::fast && soft.blockCount != 0) {
     solved = impl_->fast.run(soft, substeps);
     if (!solved) ++accurateInstead_;
   }
