@@ -215,13 +215,20 @@ class Artist {
   void contacts() {
     out_ += "<g fill=\"#d42a2a\" stroke=\"#d42a2a\"" + attribute("stroke-width", unit_) + ">\n";
     const WorldState<S>& world = space_.state();
+    const auto bodyOf = [&](ShapeId id) -> const Body<S>& {
+      return space_.body(world.shapes.valueAt(id.index).body());
+    };
     for (const Pair<S>& pair : world.pairs) {
-      const bool touches = pair.stamp == world.stamp &&
-                           (pair.state == ArbiterState::firstCollision || pair.state == ArbiterState::normal);
+      const bool touches =
+          pair.age == 0 && (pair.state == ArbiterState::firstCollision || pair.state == ArbiterState::normal);
       for (int i = 0; touches && i < pair.count; ++i) {
-        const Vector<S> at = (pair.contacts[i].pointA + pair.contacts[i].pointB) * ratio<S>(1, 2);
+        const Body<S>& a = bodyOf(pair.a);
+        const Vector<S> at =
+            (a.toWorld(pair.contacts[i].anchorA) + bodyOf(pair.b).toWorld(pair.contacts[i].anchorB)) *
+            ratio<S>(1, 2);
         out_ += "<circle" + place("cx", "cy", at) + attribute("r", unit_ * S(2)) + "/><line" +
-                place("x1", "y1", at) + place("x2", "y2", at + pair.normal * (unit_ * S(7))) + "/>\n";
+                place("x1", "y1", at) +
+                place("x2", "y2", at + rotate(pair.localNormal, a.rotation()) * (unit_ * S(7))) + "/>\n";
       }
     }
     out_ += "</g>\n";

@@ -3,6 +3,7 @@
 
 #include <samestep/error.h>
 
+#include "contact_geometry.h"
 #include "contact_row.h"
 #include "require_ieee.h"
 
@@ -29,17 +30,23 @@ void Arbiter<S>::setSurfaceVelocity(const Vector<S>& velocity) {
 }
 
 template <Scalar S>
+Vector<S> Arbiter<S>::normal() const {
+  const Vector<S> n = worldNormal(pair_, *bodies_[0]);
+  return swapped_ ? -n : n;
+}
+
+template <Scalar S>
 Vector<S> Arbiter<S>::pointA(int index) const {
   require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count());
   const Contact<S>& contact = pair_.contacts[index];
-  return swapped_ ? contact.pointB : contact.pointA;
+  return swapped_ ? bodies_[1]->toWorld(contact.anchorB) : bodies_[0]->toWorld(contact.anchorA);
 }
 
 template <Scalar S>
 Vector<S> Arbiter<S>::pointB(int index) const {
   require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count());
   const Contact<S>& contact = pair_.contacts[index];
-  return swapped_ ? contact.pointA : contact.pointB;
+  return swapped_ ? bodies_[0]->toWorld(contact.anchorA) : bodies_[1]->toWorld(contact.anchorB);
 }
 
 template <Scalar S>
@@ -69,12 +76,13 @@ void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
         "A point of a contact is outside the world.");
   }
 
-  pair_.normal = swapped_ ? -set.normal : set.normal;
+  pair_.localNormal = unrotate(swapped_ ? -set.normal : set.normal, bodies_[0]->rotation());
   for (int i = 0; i < set.count; ++i) {
     Contact<S>& contact = pair_.contacts[i];
-    contact.pointA = swapped_ ? set.points[i].pointB : set.points[i].pointA;
-    contact.pointB = swapped_ ? set.points[i].pointA : set.points[i].pointB;
+    contact.anchorA = bodies_[0]->toLocal(swapped_ ? set.points[i].pointB : set.points[i].pointA);
+    contact.anchorB = bodies_[1]->toLocal(swapped_ ? set.points[i].pointA : set.points[i].pointB);
   }
+  pair_.reusable = 0;
 }
 
 namespace {
@@ -90,7 +98,7 @@ Scaled<S> lighterMass(const Body<S>& a, const Body<S>& b) {
 template <Scalar S>
 Vector<S> Arbiter<S>::totalImpulse() const {
   Scaled<S> x{}, y{};
-  const Vector<S> n = pair_.normal;
+  const Vector<S> n = worldNormal(pair_, *bodies_[0]);
   for (int i = 0; i < count(); ++i) {
     const Contact<S>& contact = pair_.contacts[i];
     const Vector<S> speed = rotate(n, Vector<S>(contact.normalTotal, contact.tangentTotal));
@@ -108,14 +116,13 @@ S Arbiter<S>::totalKE() const {
   const Body<S>& a = *bodies_[0];
   const Body<S>& b = *bodies_[1];
   const PairResponse<S> whole = respond(a, b);
-  const Vector<S> n = pair_.normal;
+  const Vector<S> n = worldNormal(pair_, a);
   const Vector<S> t = perp(n);
   const S loss = (S(1) - pair_.elasticity) / (S(1) + pair_.elasticity);
   Scaled<S> sum{};
   for (int i = 0; i < count(); ++i) {
     const Contact<S>& contact = pair_.contacts[i];
-    const Vector<S> armA = contact.pointA - a.worldCenter();
-    const Vector<S> armB = contact.pointB - b.worldCenter();
+    const auto [armA, armB, separation] = contactArms(contact, n, a, b);
     const PairResponse<S> response = whole.at(armA, armB);
     const Scaled<S> normalK = toScaled(effectiveInverseMass(response, cross(armA, n), cross(armB, n)));
     const Scaled<S> tangentK = toScaled(effectiveInverseMass(response, cross(armA, t), cross(armB, t)));

@@ -4,6 +4,7 @@
 #include <samestep/error.h>
 #include <samestep/high_water.h>
 
+#include "contact_geometry.h"
 #include "require_ieee.h"
 
 namespace samestep {
@@ -83,10 +84,10 @@ S effectiveInverseMass(const PairResponse<S>& response, S armA, S armB) {
 template <Scalar S>
 void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairResponse<S>& whole,
                  const Body<S>& a, const Body<S>& b, ContactAxes<S>& row) {
-  const Vector<S> n = pair.normal;
+  const Vector<S> n = worldNormal(pair, a);
   const Vector<S> t = perp(n);
-  const Vector<S> armA = contact.pointA - a.worldCenter();
-  const Vector<S> armB = contact.pointB - b.worldCenter();
+  const auto [armA, armB, separation] = contactArms(contact, n, a, b);
+  row.separation = separation;
   const PairResponse<S> response = whole.at(armA, armB);
 
   row.normal = n;

@@ -49,6 +49,8 @@ struct ContactAxes {
   /// m/k, i (r x n)/k along the normal and along the tangent.
   S speedA{}, speedB{}, spinA{}, spinB{};
   S tangentSpeedA{}, tangentSpeedB{}, tangentSpinA{}, tangentSpinB{};
+  /// Of the surfaces along the normal, m; negative where they overlap.
+  S separation{};
   /// The surface's own speed along the tangent, m/s.
   S surface{};
   /// Friction coefficient, as a ratio of accumulated tangent to normal u.

@@ -7,19 +7,44 @@
 #include <samestep/collision.h>
 #include <samestep/error.h>
 
+#include "contact_geometry.h"
+
 namespace samestep {
 
-/// Puts the points of a collision into the pair; a point that the pair had before keeps its impulses.
+/// What a shape brings into a contact.
+template <Scalar S>
+struct Surface {
+  S elasticity{};
+  S friction{};
+  Vector<S> velocity{};
+
+  static Surface of(const Shape<S>& shape) {
+    return {shape.elasticity(), shape.friction(), shape.surfaceVelocity()};
+  }
+};
+
+/// Sets for a step what the surfaces of a pair say.
+/// @param normal  the pair's, in the world
+template <Scalar S>
+void takeSurfaces(Pair<S>& pair, const Surface<S>& a, const Surface<S>& b, const Vector<S>& normal) {
+  pair.elasticity = min(a.elasticity * b.elasticity, S(kMaxMaterial));
+  pair.friction = min(a.friction * b.friction, S(kMaxMaterial));
+  const Vector<S> velocity = b.velocity - a.velocity;
+  pair.surfaceVelocity = velocity - normal * dot(velocity, normal);
+}
+
+/// Puts normal and points of a collision into the pair; a point that the pair had before keeps its impulses.
+/// @param a, b  where the bodies stood
 /// @throws BufferOverflow (an internal error) if they are more than a pair holds; the pair is as it was
 /// MIS: spacePushContacts
 template <Scalar S>
-void pushContacts(Pair<S>& pair, const CollisionInfo<S>& info) {
+void pushContacts(Pair<S>& pair, const CollisionInfo<S>& info, const Frame<S>& a, const Frame<S>& b) {
   require<Fault::BufferOverflow>(info.count >= 0 && info.count <= kMaxContactsPerPair);
   Contact<S> contacts[kMaxContactsPerPair];
   for (int i = 0; i < info.count; ++i) {
     Contact<S>& contact = contacts[i];
-    contact.pointA = info.points[i].pointA;
-    contact.pointB = info.points[i].pointB;
+    contact.anchorA = a.toLocal(info.points[i].pointA);
+    contact.anchorB = b.toLocal(info.points[i].pointB);
     contact.feature = info.points[i].hash;
     for (int j = 0; j < pair.count; ++j) {
       if (pair.contacts[j].feature != contact.feature) continue;
@@ -28,6 +53,7 @@ void pushContacts(Pair<S>& pair, const CollisionInfo<S>& info) {
     }
   }
   for (int i = 0; i < kMaxContactsPerPair; ++i) pair.contacts[i] = contacts[i];
+  pair.localNormal = unrotate(info.normal, a.rotation);
   pair.count = static_cast<std::uint8_t>(info.count);
 }
 

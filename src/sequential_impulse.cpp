@@ -17,8 +17,7 @@ void ImpulseSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
     row.bodyA = indexA;
     row.bodyB = indexB;
     prepareAxes(pair, contact, response, a, b, row);
-    const S gap = dot(contact.pointB - contact.pointA, pair.normal);
-    const S overlap = clamp(-(gap + slop), S(0), S(1 << 10));
+    const S overlap = clamp(-(row.separation + slop), S(0), S(1 << 10));
     row.bias = min(overlap * biasRate, kMaxSpeed<S>);
     row.bounce = pair.elasticity *
                  normalSpeed(row, b.velocity() - a.velocity(), a.angularVelocity(), b.angularVelocity());

@@ -3,6 +3,7 @@
 
 #include <samestep/high_water.h>
 
+#include "contact_geometry.h"
 #include "kernels/kernels.h"
 #include "kernels/scalar_lanes.h"
 #include "kernels/solve_contacts.h"
@@ -184,7 +185,7 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
   const auto mark = [&](std::uint8_t& bits, bool set) {
     if (set) bits = static_cast<std::uint8_t>(bits | bit);
   };
-  const Vector<S> n = pair.normal;
+  const Vector<S> n = worldNormal(pair, a);
   const Vector<S> t = perp(n);
   block.bodyA[lane] = indexA;
   block.bodyB[lane] = indexB;
@@ -204,12 +205,12 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
   rest.pair[lane] = pairIndex;
 
   S normalPart = S(0), tangentPart = S(0), turnA = S(0), turnB = S(0);
-  Vector<S> armA[kMaxContactsPerPair], armB[kMaxContactsPerPair], reachA, reachB;
+  ContactArms<S> arms[kMaxContactsPerPair];
+  Vector<S> reachA, reachB;
   for (int i = 0; i < pair.count; ++i) {
-    armA[i] = pair.contacts[i].pointA - a.worldCenter();
-    armB[i] = pair.contacts[i].pointB - b.worldCenter();
-    reachA = {max(reachA.x, abs(armA[i].x)), max(reachA.y, abs(armA[i].y))};
-    reachB = {max(reachB.x, abs(armB[i].x)), max(reachB.y, abs(armB[i].y))};
+    arms[i] = contactArms(pair.contacts[i], n, a, b);
+    reachA = {max(reachA.x, abs(arms[i].armA.x)), max(reachA.y, abs(arms[i].armA.y))};
+    reachB = {max(reachB.x, abs(arms[i].armB.x)), max(reachB.y, abs(arms[i].armB.y))};
   }
   const PairResponse<S> held = response.at(reachA, reachB);
   const S momentA = held.momentA * perMass;
@@ -222,8 +223,8 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
     const Contact<S>& contact = pair.contacts[i];
     auto& point = block.point[i];
     const auto fill = [&](auto& axis, const Vector<S>& direction, S kept) {
-      const S inA = cross(armA[i], direction);
-      const S inB = cross(armB[i], direction);
+      const S inA = cross(arms[i].armA, direction);
+      const S inB = cross(arms[i].armB, direction);
       const S turnPerA = momentA * inA;
       const S turnPerB = momentB * inB;
       axis.armA[lane] = inA;
@@ -246,7 +247,7 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
     fill(point.tangent, t, clamp(contact.tangentSpeed * masses, -kMaxSum<S>, kMaxSum<S>));
     normalPart += point.normal.sum[lane];
     tangentPart += point.tangent.sum[lane];
-    point.separation[lane] = clamp(dot(contact.pointB - contact.pointA, n), S(-(1 << 10)), S(1 << 10));
+    point.separation[lane] = clamp(arms[i].separation, S(-(1 << 10)), S(1 << 10));
     rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = rest.bounce[i][lane] = S(0);
     if (pair.elasticity == S(0)) continue;
     const Vector<S> dv = b.velocity() - a.velocity();

@@ -94,7 +94,11 @@ void check(const Settings<S>& s) {
 template <Scalar S>
 void Space<S>::setSettings(const Settings<S>& settings) {
   check(settings);
+  const bool otherContacts =
+      settings.solver != state_.settings.solver || settings.contactMargin != state_.settings.contactMargin;
   state_.settings = settings;
+  if (!otherContacts) return;
+  for (Pair<S>& pair : state_.pairs) pair.reusable = 0;
 }
 
 template <Scalar S>
@@ -418,11 +422,24 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
   }
 
   impl_->shapesHashKnown = false;
+  impl_->surfacesKnown = false;
   kept = next;
+  ensureCache();
+  impl_->traits[id.index] = ShapeTraits<S>::of(kept);
   if (!sameGeometry) {
+    forgetManifolds(id);
     impl_->prepareShape(id.index, kept);
     impl_->poses[kept.body().index].known = false;
     impl_->touch(kept.body().index);
+  }
+}
+
+/// The next step collides anew what touches a shape.
+template <Scalar S>
+void Space<S>::forgetManifolds(ShapeId id) {
+  for (const std::uint32_t index : threadOf(state_.shapes.valueAt(id.index).body())) {
+    Pair<S>& pair = state_.pairs[index];
+    if (pair.a == id || pair.b == id) pair.reusable = 0;
   }
 }
 

@@ -17,6 +17,7 @@ template <Scalar S>
 void Space<S>::Impl::growShapes(std::uint32_t slots) {
   nextShape.resize(slots, kNone);
   placed.resize(slots);
+  traits.resize(slots);
   planeOffset.resize(slots, 0);
   planeRoom.resize(slots, 0);
 }
@@ -70,6 +71,7 @@ void Space<S>::Impl::prepareShape(std::uint32_t index, const Shape<S>& shape) {
     }
   }
   placed[index].planes = planes.data() + planeOffset[index];
+  traits[index] = ShapeTraits<S>::of(shape);
   prepare(shape, placed[index]);
 }
 
@@ -108,6 +110,8 @@ void Space<S>::ensureCache() const {
   impl.touched.clear();
   impl.nextShape.assign(state_.shapes.slots(), Impl::kNone);
   impl.placed.assign(state_.shapes.slots(), {});
+  impl.traits.assign(state_.shapes.slots(), {});
+  impl.surfacesKnown = false;
   impl.planeOffset.assign(state_.shapes.slots(), 0);
   impl.planeRoom.assign(state_.shapes.slots(), 0);
   impl.planes.clear();
@@ -128,7 +132,7 @@ void Space<S>::placeShapesOf(std::uint32_t bodyIndex) const {
   if (impl.poses[bodyIndex] == pose) return;
   impl.poses[bodyIndex] = pose;
   if (impl.firstShape[bodyIndex] == Impl::kNone) return;
-  const Transform<S> transform = holder.transform();
+  const Transform<S> transform = Transform<S>::rigid(pose.frame.origin, pose.frame.rotation);
   const bool isStatic = holder.type() == BodyType::staticBody;
   for (std::uint32_t i = impl.firstShape[bodyIndex]; i != Impl::kNone; i = impl.nextShape[i]) {
     const BB<S> box = place(transform, impl.placed[i]);

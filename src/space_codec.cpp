@@ -7,6 +7,7 @@
 
 #include "canonical_bytes.h"
 #include "canonical_reader.h"
+#include "push_contacts.h"
 #include "require_ieee.h"
 
 namespace samestep {
@@ -42,9 +43,9 @@ const char* flawOf(const WorldState<S>& world, ShapeId id, const Shape<S>& shape
 
 template <Scalar S>
 const char* flawOf(const Contact<S>& contact) {
-  // Points of shapes at the end of their range, on bodies at the end of theirs.
+  // Points of shapes at the end of their range, and those a callback may have set.
   const S far = S(1 << 23);
-  const bool good = within(contact.pointA, far) && within(contact.pointB, far) &&
+  const bool good = within(contact.anchorA, far) && within(contact.anchorB, far) &&
                     within(contact.normalSpeed, kMaxForce<S>) && within(contact.tangentSpeed, kMaxForce<S>);
   return good ? nullptr : "a contact is out of range";
 }
@@ -55,17 +56,10 @@ const char* flawOf(const WorldState<S>& world, const Pair<S>& pair) {
   const Shape<S>* b = world.shapes.find(pair.b);
   if (a == nullptr || b == nullptr) return "a pair names a shape that does not exist";
   if (a->body() == b->body()) return "a pair is of one body";
-  if (pair.count > kMaxContactsPerPair || pair.state > ArbiterState::cached || pair.solved > 1 ||
-      pair.stamp > world.stamp) {
+  if (pair.count > kMaxContactsPerPair || pair.state > ArbiterState::cached || pair.reusable > 1) {
     return "a pair is malformed";
   }
-  const S most(kMaxMaterial);
-  const S unit = ratio<S>(1026, 1024);
-  if (!within(pair.normal, unit) || !within(pair.surfaceVelocity, most * S(8)) ||
-      !(pair.elasticity >= S(0)) || !(pair.elasticity <= most) || !(pair.friction >= S(0)) ||
-      !(pair.friction <= most)) {
-    return "a pair is out of range";
-  }
+  if (!within(pair.localNormal, ratio<S>(1026, 1024))) return "a pair is out of range";
   for (const Contact<S>& contact : pair.contacts) {
     if (const char* flaw = flawOf(contact)) return flaw;
   }
@@ -115,14 +109,30 @@ class WorldReader {
     if (const char* flaw = flawOfFrame(world_)) failFormat(start, flaw);
     slots(world_.shapes, limits_.shapes, "more shapes than allowed",
           [this](ShapeId id, Shape<S>& shape) { return flawOf(world_, id, shape); });
-    list(world_.pairs, limits_.pairs, "more pairs than allowed",
-         [this](const Pair<S>& pair) { return flawOf(world_, pair); });
+    list(world_.pairs, limits_.pairs, "more pairs than allowed", [this](Pair<S>& pair) {
+      const auto exists = [&](ShapeId id) {
+        return id.index < world_.shapes.slots() && world_.shapes.aliveAt(id.index);
+      };
+      if (exists(pair.a)) pair.a = world_.shapes.idAt(pair.a.index);
+      if (exists(pair.b)) pair.b = world_.shapes.idAt(pair.b.index);
+      const char* flaw = flawOf(world_, pair);
+      if (flaw == nullptr) deriveSurfaces(pair);
+      return flaw;
+    });
     list(world_.handlers, limits_.handlers, "more handlers than allowed",
          [](const HandlerBinding& binding) { return flawOf(binding); });
     return std::move(world_);
   }
 
  private:
+  /// What is no state, but what visits read until the next step.
+  void deriveSurfaces(Pair<S>& pair) const {
+    const Shape<S>& a = world_.shapes.valueAt(pair.a.index);
+    const Shape<S>& b = world_.shapes.valueAt(pair.b.index);
+    takeSurfaces(pair, Surface<S>::of(a), Surface<S>::of(b),
+                 worldNormal(pair, world_.bodies.valueAt(a.body().index)));
+  }
+
   template <class T, class IdType, class Flaw>
   void slots(SlotMap<T, IdType>& map, std::uint32_t most, const char* tooMany, Flaw&& flawIn) {
     const std::uint64_t start = bytes_.offset();

@@ -7,12 +7,14 @@ namespace samestep {
 
 template <Scalar S>
 bool Space<S>::touching(const Pair<S>& pair) const {
-  return pair.count > 0 && pair.stamp == state_.stamp &&
+  return pair.count > 0 && pair.age == 0 &&
          (pair.state == ArbiterState::firstCollision || pair.state == ArbiterState::normal);
 }
 
 template <Scalar S>
 Arbiter<S> Space<S>::arbiterOf(Pair<S>& pair) {
+  // Its setters are for one step.
+  impl_->surfacesKnown = false;
   const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
   const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
   return {pair, state_.bodies.valueAt(shapeA.body().index), state_.bodies.valueAt(shapeB.body().index),

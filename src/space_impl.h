@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <samestep/bb_tree.h>
@@ -9,6 +10,7 @@
 
 #include "contact_groups.h"
 #include "fast_step.h"
+#include "push_contacts.h"
 #include "sequential_impulse.h"
 #include "soft_step.h"
 
@@ -17,16 +19,27 @@ namespace samestep {
 /// Where a body stood when its shapes were last placed.
 template <Scalar S>
 struct PlacedPose {
-  Vector<S> center{};
-  Vector<S> rotation{};
-  Vector<S> centerOfMass{};
+  Frame<S> frame{};
   BodyType type = BodyType::dynamicBody;
   bool known = false;
 
-  static PlacedPose of(const Body<S>& body) {
-    return {body.worldCenter(), body.rotation(), body.centerOfMass(), body.type(), true};
-  }
+  static PlacedPose of(const Body<S>& body) { return {Frame<S>::of(body), body.type(), true}; }
   friend bool operator==(const PlacedPose&, const PlacedPose&) = default;
+};
+
+/// What pairs ask about a shape, close together.
+template <Scalar S>
+struct ShapeTraits {
+  Surface<S> surface{};
+  std::uint32_t body = 0;
+  ShapeFilter filter{};
+  bool sensor = false;
+  bool round = false;  ///< A circle.
+
+  static ShapeTraits of(const Shape<S>& shape) {
+    return {Surface<S>::of(shape), shape.body().index, shape.filter(), shape.sensor(),
+            shape.type() == ShapeType::circle};
+  }
 };
 
 /// What a Space has beside its state.
@@ -68,6 +81,9 @@ struct Space<S>::Impl {
   std::vector<std::uint32_t> lastShape;
   std::vector<std::uint32_t> nextShape;
   std::vector<PlacedShape<S>> placed;
+  std::vector<ShapeTraits<S>> traits;
+  // Whether the surfaces in all pairs that touched in the last step are those of the shapes.
+  bool surfacesKnown = false;
   std::vector<std::uint32_t> planeOffset;
   std::vector<Plane<S>> planes;
   bool keepPlaced = false;
@@ -93,8 +109,8 @@ struct Space<S>::Impl {
   std::vector<std::uint32_t> solverIndex;
   std::vector<std::uint32_t> solverBodies;
   std::vector<std::uint8_t> overlapping;
-  std::vector<Pair<S>> nextPairs;
-  std::vector<std::uint8_t> nextOverlapping;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> newPairs;
+  bool someLeft = false;
   std::vector<std::uint8_t> held;
   std::vector<std::uint32_t> found;
   std::vector<std::uint32_t> foundInOne;

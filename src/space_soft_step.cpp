@@ -36,8 +36,8 @@ void Space<S>::softFindGroups() {
   for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
     const Pair<S>& pair = state_.pairs[i];
     if (pair.solved == 0) continue;
-    const std::uint32_t a = state_.shapes.valueAt(pair.a.index).body().index;
-    const std::uint32_t b = state_.shapes.valueAt(pair.b.index).body().index;
+    const std::uint32_t a = impl.traits[pair.a.index].body;
+    const std::uint32_t b = impl.traits[pair.b.index].body;
     impl.solverIndex[a] = impl.solverIndex[b] = 0;
     impl.solvedPairs.push_back(i);
     impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic(),
@@ -88,7 +88,6 @@ template <Scalar S>
 void Space<S>::softTakePairs() {
   Impl& impl = *impl_;
   SoftSolver<S>& soft = impl.soft;
-  const auto round = [](const Shape<S>& shape) { return shape.type() == ShapeType::circle; };
   std::uint32_t next = 0;
   for (std::uint32_t group = 0; group < ContactGroups::kGroups; ++group) {
     // The pairs of the last group may share bodies.
@@ -101,12 +100,12 @@ void Space<S>::softTakePairs() {
       }
       const std::uint32_t index = impl.solvedPairs[impl.groupOrder[next]];
       const Pair<S>& pair = state_.pairs[index];
-      const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
-      const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
-      const std::uint32_t a = shapeA.body().index;
-      const std::uint32_t b = shapeB.body().index;
+      const ShapeTraits<S>& shapeA = impl.traits[pair.a.index];
+      const ShapeTraits<S>& shapeB = impl.traits[pair.b.index];
+      const std::uint32_t a = shapeA.body;
+      const std::uint32_t b = shapeB.body;
       soft.addPair(lane, pair, index, impl.solverIndex[a], impl.solverIndex[b], state_.bodies.valueAt(a),
-                   state_.bodies.valueAt(b), round(shapeA), round(shapeB), state_.settings.bounceThreshold);
+                   state_.bodies.valueAt(b), shapeA.round, shapeB.round, state_.settings.bounceThreshold);
       if (lane + 1 == lanes || next + 1 == end) soft.closeBlock(lane + 1);
     }
   }

@@ -147,9 +147,8 @@ Pair<S> newPair(ShapeId a, ShapeId b) {
 /// Whether two shapes whose boxes overlap may collide at all. MIS: queryReject
 template <Scalar S>
 bool Space<S>::mayCollide(std::uint32_t a, std::uint32_t b) const {
-  const Shape<S>& shapeA = state_.shapes.valueAt(a);
-  const Shape<S>& shapeB = state_.shapes.valueAt(b);
-  return shapeA.body() != shapeB.body() && accepts(shapeA.filter(), shapeB.filter());
+  const ShapeTraits<S>&traitsA = impl_->traits[a], &traitsB = impl_->traits[b];
+  return traitsA.body != traitsB.body && accepts(traitsA.filter, traitsB.filter);
 }
 
 /// How far apart two boxes may be for their shapes to be a pair, m.
@@ -162,78 +161,116 @@ template <Scalar S>
 void Space<S>::findPairs() {
   Impl& impl = *impl_;
   auto& pairs = state_.pairs;
-  impl.nextPairs.clear();
-  impl.overlapping.clear();
-  // Both lists are sorted; a pair that stays in its place costs no copy until the first one that does not.
-  std::size_t old = 0;
-  bool copying = false;
-  const auto startCopying = [&] {
-    if (copying) return;
-    copying = true;
-    impl.nextPairs.assign(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(old));
-  };
-  const auto keepTouched = [&](const Pair<S>& pair) {
-    // Its boxes came apart: only a contact that may come back is kept.
-    if (pair.state == ArbiterState::apart) {
-      startCopying();
-      ++old;
-    } else {
-      if (copying) impl.nextPairs.push_back(pair);
-      impl.overlapping.push_back(0);
-      ++old;
-    }
-  };
   const S margin = pairMargin();
   if (impl.dynamicTree.margin() != margin) {
     impl.dynamicTree.setMargin(margin);
     impl.staticTree.setMargin(margin);
   }
   impl.dynamicTree.updatePairs();
-  for (const auto [a, b] : impl.dynamicTree.pairs()) {
-    if (!intersects(inflate(impl.placed[a].box, margin), impl.placed[b].box) || !mayCollide(a, b)) continue;
-    while (old < pairs.size() && std::pair(pairs[old].a.index, pairs[old].b.index) < std::pair(a, b)) {
-      keepTouched(pairs[old]);
-    }
-    if (old < pairs.size() && pairs[old].a.index == a && pairs[old].b.index == b) {
-      if (copying) impl.nextPairs.push_back(pairs[old]);
+  // Both lists are sorted. The pairs that stay close up in place; the new ones are merged in afterwards.
+  impl.overlapping.clear();
+  impl.newPairs.clear();
+  std::size_t old = 0, kept = 0;
+  const auto keep = [&](bool overlap) {
+    if (kept != old) pairs[kept] = pairs[old];
+    ++old;
+    ++kept;
+    impl.overlapping.push_back(overlap ? 1 : 0);
+  };
+  // Its boxes came apart: only a contact that may come back is kept.
+  const auto leave = [&] {
+    if (pairs[old].state == ArbiterState::apart) {
       ++old;
     } else {
-      startCopying();
-      impl.nextPairs.push_back(newPair<S>(state_.shapes.idAt(a), state_.shapes.idAt(b)));
+      keep(false);
     }
-    impl.overlapping.push_back(1);
+  };
+  for (const auto [a, b] : impl.dynamicTree.pairs()) {
+    if (!intersects(inflate(impl.placed[a].box, margin), impl.placed[b].box) || !mayCollide(a, b)) continue;
+    while (old < pairs.size() && std::pair(pairs[old].a.index, pairs[old].b.index) < std::pair(a, b)) leave();
+    if (old < pairs.size() && pairs[old].a.index == a && pairs[old].b.index == b) {
+      keep(true);
+    } else {
+      impl.newPairs.emplace_back(a, b);
+    }
   }
-  while (old < pairs.size()) keepTouched(pairs[old]);
-  if (copying) pairs.swap(impl.nextPairs);
-  impl.threadsKnown = false;
+  while (old < pairs.size()) leave();
+  if (kept != old || !impl.newPairs.empty()) impl.threadsKnown = false;
+  pairs.resize(kept);
+  mergeNewPairs();
   endStage(Stage::findPairs);
+}
+
+/// From the back, so that the old pairs need no second array.
+template <Scalar S>
+void Space<S>::mergeNewPairs() {
+  Impl& impl = *impl_;
+  auto& pairs = state_.pairs;
+  std::size_t fresh = impl.newPairs.size();
+  if (fresh == 0) return;
+  std::size_t old = pairs.size();
+  const std::size_t count = old + fresh;
+  // Little room to spare: these are the largest records of a world.
+  if (count > pairs.capacity()) pairs.reserve(count + count / 8);
+  pairs.resize(count);
+  impl.overlapping.resize(count);
+  for (std::size_t to = count; fresh > 0; --to) {
+    const auto [a, b] = impl.newPairs[fresh - 1];
+    if (old > 0 && std::pair(pairs[old - 1].a.index, pairs[old - 1].b.index) > std::pair(a, b)) {
+      --old;
+      pairs[to - 1] = pairs[old];
+      impl.overlapping[to - 1] = impl.overlapping[old];
+    } else {
+      pairs[to - 1] = newPair<S>(state_.shapes.idAt(a), state_.shapes.idAt(b));
+      impl.overlapping[to - 1] = 1;
+      --fresh;
+    }
+  }
 }
 
 template <Scalar S>
 void Space<S>::collidePairs() {
+  Impl& impl = *impl_;
+  const bool surfacesKnown = impl.surfacesKnown;
+  impl.surfacesKnown = false;
+  impl.someLeft = false;
   for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
     Pair<S>& pair = state_.pairs[i];
     if (pair.state == ArbiterState::firstCollision) pair.state = ArbiterState::normal;
     pair.solved = 0;
-    if (impl_->overlapping[i] != 0) collidePair(pair);
+    if (pair.state != ArbiterState::apart && pair.age != 0xffffffffu) ++pair.age;
+    if (impl.overlapping[i] != 0) collidePair(pair, surfacesKnown);
+    if (pair.state != ArbiterState::apart && pair.age != 0) impl.someLeft = true;
   }
+  // What callbacks have set is for this step.
+  impl.surfacesKnown = state_.handlers.empty();
 }
 
 template <Scalar S>
-void Space<S>::collidePair(Pair<S>& pair) {
-  const bool sensor =
-      state_.shapes.valueAt(pair.a.index).sensor() || state_.shapes.valueAt(pair.b.index).sensor();
-  const CollisionInfo<S> info = collide(impl_->placed[pair.a.index], impl_->placed[pair.b.index],
-                                        pair.collisionId, &collisionStats_, sensor ? S(0) : pairMargin());
-  pair.collisionId = info.id;
-  if (info.count == 0) return;
-  const bool wanted = applyCollision(pair, info);
-  pair.stamp = state_.stamp;
-  const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
-  const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
-  const Scaled<S> immovable{};
-  const bool moves = state_.bodies.valueAt(shapeA.body().index).inverseMass() != immovable ||
-                     state_.bodies.valueAt(shapeB.body().index).inverseMass() != immovable;
+void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown) {
+  const Impl& impl = *impl_;
+  const ShapeTraits<S>&shapeA = impl.traits[pair.a.index], &shapeB = impl.traits[pair.b.index];
+  const PlacedPose<S>&bodyA = impl.poses[shapeA.body], &bodyB = impl.poses[shapeB.body];
+  const bool sensor = shapeA.sensor || shapeB.sensor;
+  const bool recycles = state_.settings.solver == SolverKind::softStep && !sensor;
+  RelativePose pose;
+  if (recycles) pose = relativePose(bodyA.frame, bodyB.frame);
+  const bool same = recycles && pair.reusable != 0 && pair.age == 1 && steady(pose, pair.pose);
+  if (!same) {
+    const CollisionInfo<S> info = collide(impl.placed[pair.a.index], impl.placed[pair.b.index],
+                                          pair.collisionId, &collisionStats_, sensor ? S(0) : pairMargin());
+    pair.collisionId = info.id;
+    if (info.count == 0) return;
+    pushContacts(pair, info, bodyA.frame, bodyB.frame);
+    pair.pose = pose;
+    pair.reusable = recycles ? 1 : 0;
+  }
+  pair.age = 0;
+  if (!same || !surfacesKnown || shapeA.surface.velocity != shapeB.surface.velocity) {
+    takeSurfaces(pair, shapeA.surface, shapeB.surface, rotate(pair.localNormal, bodyA.frame.rotation));
+  }
+  const bool wanted = applyCollision(pair);
+  const bool moves = bodyA.type == BodyType::dynamicBody || bodyB.type == BodyType::dynamicBody;
   if (wanted && moves && !sensor) {
     pair.solved = 1;
   } else {
@@ -249,15 +286,7 @@ void Space<S>::collidePair(Pair<S>& pair) {
 
 /// Takes over a collision and asks the callbacks. MIS: arbiterUpdate
 template <Scalar S>
-bool Space<S>::applyCollision(Pair<S>& pair, const CollisionInfo<S>& info) {
-  const Shape<S>& shapeA = state_.shapes.valueAt(pair.a.index);
-  const Shape<S>& shapeB = state_.shapes.valueAt(pair.b.index);
-  pushContacts(pair, info);
-  pair.normal = info.normal;
-  pair.elasticity = min(shapeA.elasticity() * shapeB.elasticity(), S(kMaxMaterial));
-  pair.friction = min(shapeA.friction() * shapeB.friction(), S(kMaxMaterial));
-  const Vector<S> surface = shapeB.surfaceVelocity() - shapeA.surfaceVelocity();
-  pair.surfaceVelocity = surface - info.normal * dot(surface, info.normal);
+bool Space<S>::applyCollision(Pair<S>& pair) {
   if (pair.state == ArbiterState::apart || pair.state == ArbiterState::cached) {
     pair.state = ArbiterState::firstCollision;
   }
@@ -280,20 +309,21 @@ template <Scalar S>
 void Space<S>::expirePairs() {
   Impl& impl = *impl_;
   bool dropped = false;
-  for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
+  for (std::size_t i = 0; impl.someLeft && i < state_.pairs.size(); ++i) {
     Pair<S>& pair = state_.pairs[i];
-    if (pair.state == ArbiterState::apart || pair.stamp == state_.stamp || rests(pair)) continue;
+    if (pair.state == ArbiterState::apart || pair.age == 0 || rests(pair)) continue;
     if (pair.state != ArbiterState::cached) {
       pair.state = ArbiterState::cached;
       callSeparate(pair, false);
     }
-    if (state_.stamp - pair.stamp < collisionPersistence()) continue;
+    if (pair.age < collisionPersistence()) continue;
     if (impl.overlapping[i] != 0) {
       const CollisionId id = pair.collisionId;
       pair = newPair<S>(pair.a, pair.b);
       pair.collisionId = id;
     } else {
       pair.state = ArbiterState::apart;
+      pair.age = 0;
       dropped = true;
     }
   }

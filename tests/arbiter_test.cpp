@@ -43,13 +43,14 @@ class ArbiterTest : public ::testing::Test {
     Pair<S> pair;
     pair.a = {3, 1};
     pair.b = {5, 1};
-    pair.normal = {S(1), S(0)};
+    pair.localNormal = {S(1), S(0)};
     pair.count = 2;
     pair.state = ArbiterState::firstCollision;
-    pair.contacts[0].pointA = {S(2), S(1)};
-    pair.contacts[0].pointB = {S(1), S(1)};
-    pair.contacts[1].pointA = {S(2), S(-1)};
-    pair.contacts[1].pointB = {ratio<S>(3, 2), S(-1)};
+    pair.contacts[0].anchorA = {S(2), S(1)};
+    pair.contacts[0].anchorB = {S(1), S(1)};
+    pair.contacts[1].anchorA = {S(2), S(-1)};
+    pair.contacts[1].anchorB = {ratio<S>(3, 2), S(-1)};
+    pair.reusable = 1;
     return pair;
   }();
   Body<S> bodyA_{S(1), S(1)};
@@ -150,6 +151,23 @@ TYPED_TEST(ArbiterTest, ContactPointSetKeepsItsNumberOfPoints) {
   arbiter.setContactPointSet(set);
   EXPECT_EQ(arbiter.normal(), Vector<S>(S(0), S(1)));
   EXPECT_EQ(arbiter.pointA(0), Vector<S>(S(7), S(7)));
+  EXPECT_EQ(this->pair_.reusable, 0);
+}
+
+TYPED_TEST(ArbiterTest, NormalAndPointsFollowTheBodies) {
+  using S = TypeParam;
+  Arbiter<S> arbiter = this->make();
+  this->bodyA_.setPosition({S(10), S(20)});
+  this->bodyB_.setPosition({S(11), S(20)});
+  EXPECT_EQ(arbiter.pointA(0), Vector<S>(S(12), S(21)));
+  EXPECT_EQ(arbiter.pointB(0), Vector<S>(S(12), S(21)));
+  EXPECT_EQ(arbiter.depth(0), S(0));
+  this->bodyA_.setAngle(kPi<S> * ratio<S>(1, 2));
+  EXPECT_NEAR(double(arbiter.normal().x), 0, 1e-8);
+  EXPECT_NEAR(double(arbiter.normal().y), 1, 1e-8);
+  EXPECT_NEAR(double(arbiter.pointA(0).x), 9, 1e-8);
+  EXPECT_NEAR(double(arbiter.pointA(0).y), 22, 1e-8);
+  EXPECT_NEAR(double(arbiter.depth(0)), -1, 1e-8);
 }
 
 TYPED_TEST(ArbiterTest, IgnoreAnswersFalse) {
@@ -351,6 +369,8 @@ TYPED_TEST(ArbiterTest, GettersSaturateAtTheEndsOfTheRanges) {
   for (Contact<S>& contact : pair.contacts) {
     contact.normalTotal = S(1 << 20);
     contact.tangentTotal = S(1 << 20);
+    contact.anchorA += Vector<S>(S(200), S(200));
+    contact.anchorB -= Vector<S>(S(200), S(200));
   }
   Body<S> a(kMaxMass<S>, kMinMoment<S>);
   Body<S> b(kMaxMass<S>, kMinMoment<S>);

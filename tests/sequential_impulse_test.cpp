@@ -16,10 +16,10 @@ class ImpulseSolverTest : public ::testing::Test {
     a_.setVelocity({S(2), S(0)});
     b_.setPosition({S(2), S(0)});
     b_.setVelocity({S(-2), S(0)});
-    pair_.normal = {S(1), S(0)};
+    pair_.localNormal = {S(1), S(0)};
     pair_.count = 1;
-    pair_.contacts[0].pointA = {ratio<S>(5, 4), S(0)};
-    pair_.contacts[0].pointB = {ratio<S>(3, 4), S(0)};
+    pair_.contacts[0].anchorA = {ratio<S>(5, 4), S(0)};
+    pair_.contacts[0].anchorB = {ratio<S>(-5, 4), S(0)};
     pair_.elasticity = ratio<S>(1, 2);
     solver_.bodies.resize(2);
     solver_.bodies[0].velocity = a_.velocity();

@@ -118,7 +118,11 @@ TYPED_TEST(StateDiffTest, FindsTheStageAndFieldInWhichAHandlerStrays) {
   wiring.connect = [](Space<S>& space, void*) {
     CollisionHandler<S> handler;
     handler.preSolve = [](Arbiter<S>& arbiter, Space<S>& world, void* straying) {
-      if (straying != nullptr && world.stamp() > 10) arbiter.setFriction(ratio<S>(1, 2));
+      if (straying != nullptr && world.stamp() > 10) {
+        ContactPointSet<S> set = arbiter.contactPointSet();
+        set.points[0].pointB.y += ratio<S>(1, 1024);
+        arbiter.setContactPointSet(set);
+      }
       return true;
     };
     handler.data = wired++ % 2 == 1 ? &strays : nullptr;
@@ -144,7 +148,7 @@ TYPED_TEST(StateDiffTest, FindsTheStageAndFieldInWhichAHandlerStrays) {
   EXPECT_EQ(found.stage, stageName(Stage::collide));
   ASSERT_EQ(found.fields.size(), 1u);
   EXPECT_EQ(found.fields[0].object, "pair of shapes 0 and 1");
-  EXPECT_EQ(found.fields[0].field, "friction");
+  EXPECT_EQ(found.fields[0].field, "contact[0].anchorB.y");
   EXPECT_EQ(found.commandTick, 0u);
 }
 

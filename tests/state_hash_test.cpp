@@ -38,20 +38,20 @@ TEST(StateHashTest, IsXxh3OverLittleEndianFields) {
 #ifndef SAMESTEP_FIXED_ONLY
 TEST(StateHashTest, DoublesGoInAsTheirBits) {
   Contact<double> contact;
-  contact.pointA = {1.0, -2.0};
+  contact.anchorA = {1.0, -2.0};
   contact.feature = 5;
-  std::vector<std::uint8_t> bytes(8 * 8 + 4, 0);
+  std::vector<std::uint8_t> bytes(6 * 8 + 4, 0);
   bytes[6] = 0xf0, bytes[7] = 0x3f;
   bytes[15] = 0xc0;
-  bytes[64] = 5;
+  bytes[48] = 5;
   EXPECT_EQ(hashOf(contact), hashOfBytes(bytes));
 }
 #endif
 
 TEST(StateHashTest, FixedNumbersGoInAsTheirUnits) {
   Contact<Fixed> contact;
-  contact.pointA = {Fixed(1), Fixed(-1)};
-  std::vector<std::uint8_t> bytes(8 * 8 + 4, 0);
+  contact.anchorA = {Fixed(1), Fixed(-1)};
+  std::vector<std::uint8_t> bytes(6 * 8 + 4, 0);
   bytes[4] = 1;
   for (const std::size_t i : {12u, 13u, 14u, 15u}) bytes[i] = 0xff;
   EXPECT_EQ(hashOf(contact), hashOfBytes(bytes));

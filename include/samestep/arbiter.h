@@ -22,14 +22,15 @@ enum class ArbiterState : std::uint8_t {
 /// One contact point of a pair, as it is kept from step to step.
 template <Scalar S>
 struct Contact {
-  /// On the surface of each shape, world coordinates, when the shapes were last collided.
-  Vector<S> pointA{};
-  Vector<S> pointB{};
+  /// On the surface of each shape, in the coordinates of its body: where the body goes, the point goes.
+  Vector<S> anchorA{};
+  Vector<S> anchorB{};
   /// The accumulated impulses along the normal and its left perpendicular, as the change of speed they give
   /// the lighter body, m/s: at full precision whatever the masses are.
   S normalSpeed{};
   S tangentSpeed{};
-  /// The whole impulses of the last step in the same measure: with substeps the sums over all of them.
+  /// The whole impulses of the last step in the same measure: with substeps the sums over all of them. No
+  /// state: only callbacks and visits read them.
   S normalTotal{};
   S tangentTotal{};
   /// Which features touch: tells which point of the last step this one continues.
@@ -38,13 +39,27 @@ struct Contact {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("pointA", self.pointA);
-    visit("pointB", self.pointB);
+    visit("anchorA", self.anchorA);
+    visit("anchorB", self.anchorB);
     visit("normalSpeed", self.normalSpeed);
     visit("tangentSpeed", self.tangentSpeed);
-    visit("normalTotal", self.normalTotal);
-    visit("tangentTotal", self.tangentTotal);
     visit("feature", self.feature);
+  }
+};
+
+/// How B stood to A when a pair was collided: enough to tell whether it still stands so.
+struct RelativePose {
+  /// B's origin in A's coordinates, in units of 2^-14 m toward zero.
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  /// Cosine (high half) and sine of the angle from A to B, in the same units of 1.
+  std::uint32_t turn = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("x", self.x);
+    visit("y", self.y);
+    visit("turn", self.turn);
   }
 };
 
@@ -52,40 +67,42 @@ struct Contact {
 /// MIS: arbiterInit
 template <Scalar S>
 struct Pair {
+  /// Of the state only the slots: a shape that goes takes its pairs with it.
   ShapeId a{};
   ShapeId b{};
-  /// From a to b, a unit vector.
-  Vector<S> normal{};
+  /// From a to b, a unit vector in the coordinates of a's body.
+  Vector<S> localNormal{};
   Contact<S> contacts[kMaxContactsPerPair]{};
-  /// For this collision; see Arbiter's setters.
+  /// For this step, from the shapes or from Arbiter's setters. No state.
   S elasticity{};
   S friction{};
   Vector<S> surfaceVelocity{};
-  /// The step in which the shapes last touched.
-  std::uint64_t stamp = 0;
+  /// Where the bodies stood when normal and points were found.
+  RelativePose pose{};
   /// Where the closest-feature search of the next step starts.
   CollisionId collisionId = 0;
+  /// Steps since the shapes last touched, saturated; 0 while they stand apart.
+  std::uint32_t age = 0;
   std::uint8_t count = 0;
   ArbiterState state = ArbiterState::apart;
-  /// Whether this step solves it: touching, wanted by its callbacks, no sensor.
+  /// Whether normal and points may be used again while the bodies stand as in `pose`.
+  std::uint8_t reusable = 0;
+  /// Whether this step solves it: touching, wanted by its callbacks, no sensor. No state.
   std::uint8_t solved = 0;
-  std::uint8_t unused = 0;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("a", self.a);
-    visit("b", self.b);
-    visit("normal", self.normal);
+    visit("a", self.a.index);
+    visit("b", self.b.index);
+    visit("localNormal", self.localNormal);
     visit("contact[0]", self.contacts[0]);
     visit("contact[1]", self.contacts[1]);
-    visit("elasticity", self.elasticity);
-    visit("friction", self.friction);
-    visit("surfaceVelocity", self.surfaceVelocity);
-    visit("stamp", self.stamp);
+    visit("pose", self.pose);
     visit("collisionId", self.collisionId);
+    visit("age", self.age);
     visit("count", self.count);
     visit("state", self.state);
-    visit("solved", self.solved);
+    visit("reusable", self.reusable);
   }
 };
 
@@ -131,9 +148,10 @@ class Arbiter {
 
   /// How many points touch: 1 or 2, or 0 in separate. MIS: arbiterGetCount
   int count() const { return pair_.state == ArbiterState::cached ? 0 : pair_.count; }
-  /// From A to B, a unit vector. MIS: arbiterGetNormal
-  Vector<S> normal() const { return swapped_ ? -pair_.normal : pair_.normal; }
-  /// On the surface of A, world coordinates, m.
+  /// From A to B, a unit vector; as the points it follows the bodies. MIS: arbiterGetNormal
+  Vector<S> normal() const;
+  /// On the surface of A, world coordinates, m: fixed to A since the shapes were last collided, and so where
+  /// A stands now.
   /// @throws ContactIndexOutOfBounds
   /// MIS: arbiterGetPointA
   Vector<S> pointA(int index) const;
@@ -146,7 +164,7 @@ class Arbiter {
   S depth(int index) const;
   /// MIS: arbiterGetContactPointSet
   ContactPointSet<S> contactPointSet() const;
-  /// Replaces normal and points for this step.
+  /// Replaces normal and points for this step; the next one collides the shapes again.
   /// @throws ImmutableNumContacts, ValueOutOfRange for a point out of the world or a normal that is no unit
   /// vector MIS: arbiterSetContactPointSet
   void setContactPointSet(const ContactPointSet<S>& set);

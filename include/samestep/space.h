@@ -562,6 +562,7 @@ class Space {
   /// Places the shapes of what moved anew. MIS: shapeUpdateFunc
   void updateShapes();
   void findPairs();
+  void mergeNewPairs();
   void collidePairs();
   /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
   /// MIS: spaceArbiterSetFilter
@@ -588,9 +589,10 @@ class Space {
   void placeShapesOf(std::uint32_t bodyIndex) const;
   void refreshTouched();
   /// MIS: spaceCollideShapes
-  void collidePair(Pair<S>& pair);
+  void collidePair(Pair<S>& pair, bool surfacesKnown);
   /// Takes over a collision and asks the callbacks: whether the pair shall be solved. MIS: arbiterUpdate
-  bool applyCollision(Pair<S>& pair, const CollisionInfo<S>& info);
+  bool applyCollision(Pair<S>& pair);
+  void forgetManifolds(ShapeId id);
   void callSeparate(Pair<S>& pair, bool removal);
   /// Forgets the pairs of a body or of a shape, which takes them out of every thread. MIS: arbiterUnthread
   void dropPairs(BodyId body, ShapeId shape);
