@@ -103,6 +103,16 @@ void clearPoint(ContactBlock<N>& block, BlockRest<N>& rest, int lane, int point)
       typename N::Sum(0);
 }
 
+/// Of a contact's points, from the centres of mass, each in the coordinates of its body.
+template <Scalar S>
+struct AnchorArms {
+  Vector<S> a, b;
+};
+template <Scalar S>
+AnchorArms<S> anchorArms(const Contact<S>& contact, const Body<S>& a, const Body<S>& b) {
+  return {contact.anchorA - a.centerOfMass(), contact.anchorB - b.centerOfMass()};
+}
+
 /// As respond(), from the bodies' own moments by mass.
 template <Scalar S>
 PairResponse<S> respondWith(const Body<S>& a, S momentPerMassA, const Body<S>& b, S momentPerMassB) {
@@ -180,13 +190,13 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
   const PairResponse<S> response = respondWith(a, momentsPerMass[indexA], b, momentsPerMass[indexB]);
   const S masses = response.massA + response.massB;
   const bool alone = masses == S(1);
-  const S perMass = alone ? S(1) : masses == S(2) ? ratio<S>(1, 2) : reciprocal(masses);
+  const bool equal = masses == S(2);
+  const S perMass = alone ? S(1) : equal ? ratio<S>(1, 2) : reciprocal(masses);
   const auto bit = static_cast<std::uint8_t>(1 << lane);
   const auto mark = [&](std::uint8_t& bits, bool set) {
     if (set) bits = static_cast<std::uint8_t>(bits | bit);
   };
   const Vector<S> n = worldNormal(pair, a);
-  const Vector<S> t = perp(n);
   block.bodyA[lane] = indexA;
   block.bodyB[lane] = indexB;
   block.count[lane] = pair.count;
@@ -201,16 +211,19 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
   block.shareA[lane] = response.massA * perMass;
   const S shareB = S(1) - block.shareA[lane];
   block.friction[lane] = pair.friction;
-  block.surface[lane] = dot(pair.surfaceVelocity, t);
+  block.surface[lane] = cross(n, pair.surfaceVelocity);
   rest.pair[lane] = pairIndex;
 
+  // An arm by the normal is the same in the body's coordinates, where points and A's normal are kept.
+  const Vector<S> nA = pair.localNormal;
+  const Vector<S> nB = unrotate(n, b.rotation());
+  const S between = dot(n, b.worldCenter() - a.worldCenter());
   S normalPart = S(0), tangentPart = S(0), turnA = S(0), turnB = S(0);
-  ContactArms<S> arms[kMaxContactsPerPair];
   Vector<S> reachA, reachB;
   for (int i = 0; i < pair.count; ++i) {
-    arms[i] = contactArms(pair.contacts[i], n, a, b);
-    reachA = {max(reachA.x, abs(arms[i].armA.x)), max(reachA.y, abs(arms[i].armA.y))};
-    reachB = {max(reachB.x, abs(arms[i].armB.x)), max(reachB.y, abs(arms[i].armB.y))};
+    const auto [toA, toB] = anchorArms(pair.contacts[i], a, b);
+    reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
+    reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
   }
   const PairResponse<S> held = response.at(reachA, reachB);
   const S momentA = held.momentA * perMass;
@@ -219,12 +232,11 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
     block.moments.momentA[lane] = momentA;
     block.moments.momentB[lane] = momentB;
   }
+  const auto keptSum = [&](S speed) { return alone ? speed : equal ? speed + speed : speed * masses; };
   for (int i = 0; i < pair.count; ++i) {
     const Contact<S>& contact = pair.contacts[i];
     auto& point = block.point[i];
-    const auto fill = [&](auto& axis, const Vector<S>& direction, S kept) {
-      const S inA = cross(arms[i].armA, direction);
-      const S inB = cross(arms[i].armB, direction);
+    const auto fill = [&](auto& axis, S inA, S inB, S kept) {
       const S turnPerA = momentA * inA;
       const S turnPerB = momentB * inB;
       axis.armA[lane] = inA;
@@ -243,11 +255,15 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
       highWater<S>("contact: spin per unit of u", max(abs(turnPerA), abs(turnPerB)));
       highWater<S>("contact: kept impulse u", kept);
     };
-    fill(point.normal, n, clamp(contact.normalSpeed * masses, S(0), kMaxSum<S>));
-    fill(point.tangent, t, clamp(contact.tangentSpeed * masses, -kMaxSum<S>, kMaxSum<S>));
+    const auto [toA, toB] = anchorArms(contact, a, b);
+    // r x t is r . n.
+    const S depthA = dot(toA, nA);
+    const S depthB = dot(toB, nB);
+    fill(point.normal, cross(toA, nA), cross(toB, nB), clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>));
+    fill(point.tangent, depthA, depthB, clamp(keptSum(contact.tangentSpeed), -kMaxSum<S>, kMaxSum<S>));
+    point.separation[lane] = clamp(between + (depthB - depthA), S(-(1 << 10)), S(1 << 10));
     normalPart += point.normal.sum[lane];
     tangentPart += point.tangent.sum[lane];
-    point.separation[lane] = clamp(arms[i].separation, S(-(1 << 10)), S(1 << 10));
     rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = rest.bounce[i][lane] = S(0);
     if (pair.elasticity == S(0)) continue;
     const Vector<S> dv = b.velocity() - a.velocity();
