@@ -17,9 +17,11 @@ int countAfter(const std::string& text, const std::string& prefix) {
 
 std::unique_ptr<World> makeSamestep(const std::string& engine, const PeerScene& scene, const char* prefix,
                                     std::unique_ptr<World> (*make)(const PeerScene&, SolverChoice)) {
-  for (const bool soft : {false, true}) {
-    const int count = countAfter(engine, std::string(prefix) + (soft ? "soft" : "impulses"));
-    if (count > 0) return make(scene, {soft, count});
+  const std::pair<const char*, SolverChoice> kinds[] = {
+      {"impulses", {}}, {"soft", {true, false, 0}}, {"fast", {true, true, 0}}};
+  for (auto [kind, choice] : kinds) {
+    choice.count = countAfter(engine, std::string(prefix) + kind);
+    if (choice.count > 0) return make(scene, choice);
   }
   return nullptr;
 }

@@ -28,6 +28,7 @@ class World {
 /// How Samestep solves contacts.
 struct SolverChoice {
   bool soft = false;
+  bool fast = false;  ///< The soft step at fast precision.
   int count = 10;  ///< Substeps of the soft step, or iterations of the sequential impulses.
 };
 

@@ -27,7 +27,8 @@ struct Plan {
                                    "samestep-double-impulses10",
                                    "samestep-double-soft4",
                                    "samestep-fixed-impulses10",
-                                   "samestep-fixed-soft4"};
+                                   "samestep-fixed-soft4",
+                                   "samestep-fixed-fast4"};
   int rounds = 5;
   int warmUp = 30;
   int timed = 300;

@@ -27,6 +27,7 @@ class SamestepWorld : public World {
     if (solver.soft) {
       space_.setSolver(SolverKind::softStep);
       space_.setSubsteps(solver.count);
+      if (solver.fast) space_.setPrecision(ContactPrecision::fast);
     } else {
       space_.setSolver(SolverKind::sequentialImpulses);
       space_.setIterations(solver.count);

@@ -17,8 +17,12 @@ namespace {
 constexpr int kWarmUp = 30;
 constexpr int kTimed = 300;
 
-constexpr const char* kEngines[] = {"chipmunk", "samestep-double-impulses10", "samestep-double-soft4",
-                                    "samestep-fixed-impulses10", "samestep-fixed-soft4"};
+constexpr const char* kEngines[] = {"chipmunk",
+                                    "samestep-double-impulses10",
+                                    "samestep-double-soft4",
+                                    "samestep-fixed-impulses10",
+                                    "samestep-fixed-soft4",
+                                    "samestep-fixed-fast4"};
 constexpr const char* kScenes[] = {"pyramid40", "soup"};
 
 void run(benchmark::State& state, const PeerScene& scene, const char* engine) {

@@ -47,7 +47,7 @@ void SceneBuilder<S>::buildFile() {
 template <Scalar S>
 void SceneBuilder<S>::readSettings(const Cursor& at) {
   Space<S>& space = scene_.space_;
-  at.allow({"solver", "gravity", "iterations", "substeps", "damping", "collisionSlop", "collisionBias",
+  at.allow({"solver", "precision", "gravity", "iterations", "substeps", "damping", "collisionSlop", "collisionBias",
             "collisionPersistence", "contactHertz", "contactDamping", "contactPushSpeed", "contactMargin",
             "bounceThreshold", "worldExtent"});
   at.optional("solver", [&](const Cursor& v) {
@@ -56,6 +56,14 @@ void SceneBuilder<S>::readSettings(const Cursor& at) {
       space.setSolver(SolverKind::softStep);
     } else if (solver != "sequential impulses") {
       v.fail("\"sequential impulses\" or \"soft step\" is wanted here");
+    }
+  });
+  at.optional("precision", [&](const Cursor& v) {
+    const std::string& precision = v.text();
+    if (precision == "fast") {
+      space.setPrecision(ContactPrecision::fast);
+    } else if (precision != "accurate") {
+      v.fail("\"accurate\" or \"fast\" is wanted here");
     }
   });
   at.optional("substeps",

@@ -17,36 +17,41 @@ class ContactGroups {
   /// Starts anew for bodies numbered below `bodies`.
   void clear(std::uint32_t bodies) {
     used_.assign(bodies, 0);
-    groups_.clear();
+    places_.clear();
     for (std::uint32_t& size : sizes_) size = 0;
   }
   /// The next pair; a body that nothing moves may be in every group.
-  void add(std::uint32_t a, bool aMoves, std::uint32_t b, bool bMoves) {
+  /// @param late  to come after those of its group that are not
+  void add(std::uint32_t a, bool aMoves, std::uint32_t b, bool bMoves, bool late) {
     const std::uint64_t taken = (aMoves ? used_[a] : 0) | (bMoves ? used_[b] : 0);
     const std::uint32_t free = static_cast<std::uint32_t>(std::countr_one(taken));
     const std::uint32_t group = free < kGroups ? free : kGroups - 1;
     const std::uint64_t bit = std::uint64_t{1} << group;
     if (aMoves) used_[a] |= bit;
     if (bMoves) used_[b] |= bit;
-    groups_.push_back(static_cast<std::uint8_t>(group));
-    ++sizes_[group];
+    const std::uint32_t place = 2 * group + (late && group != kGroups - 1 ? 1 : 0);
+    places_.push_back(static_cast<std::uint8_t>(place));
+    ++sizes_[place];
   }
-  /// The numbers of the pairs, counted as they were added, group after group, in order within each.
+  /// The numbers of the pairs, counted as they were added, group after group, in order within each half of a
+  /// group.
   void sort(std::vector<std::uint32_t>& order) const {
-    std::uint32_t next[kGroups];
+    std::uint32_t next[2 * kGroups];
     std::uint32_t start = 0;
-    for (std::uint32_t group = 0; group < kGroups; ++group) {
-      next[group] = start;
-      start += sizes_[group];
+    for (std::uint32_t place = 0; place < 2 * kGroups; ++place) {
+      next[place] = start;
+      start += sizes_[place];
     }
-    order.resize(groups_.size());
-    for (std::uint32_t i = 0; i < groups_.size(); ++i) order[next[groups_[i]]++] = i;
+    order.resize(places_.size());
+    for (std::uint32_t i = 0; i < places_.size(); ++i) order[next[places_[i]]++] = i;
   }
+  /// How many pairs a group has.
+  std::uint32_t size(std::uint32_t group) const { return sizes_[2 * group] + sizes_[2 * group + 1]; }
 
  private:
   std::vector<std::uint64_t> used_;
-  std::vector<std::uint8_t> groups_;
-  std::uint32_t sizes_[kGroups] = {};
+  std::vector<std::uint8_t> places_;
+  std::uint32_t sizes_[2 * kGroups] = {};
 };
 
 }  // namespace samestep

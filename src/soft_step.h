@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact_block.h"
 #include "contact_row.h"
 
 namespace samestep {
@@ -14,73 +15,60 @@ namespace samestep {
 /// Sources: M. Macklin et al., "Small Steps in Physics Simulation" (2019); E. Catto, "Soft Constraints" (GDC
 /// 2011) and "Solver2D" (box2d.org, 2024).
 
-/// One body in the substeps: its velocities, and how far it has moved and turned since the step began.
-template <Scalar S>
-struct SoftBody {
-  Vector<S> velocity{};
-  S angularVelocity{};
-  Vector<S> moved{};
-  S turned{};
-  /// Half the square of `turned`: how far turning moves a point towards the centre, per metre.
-  S bend{};
-};
-
-/// What one substep adds to a body's velocities by itself.
-template <Scalar S>
-struct SoftDrive {
-  Vector<S> velocity{};
-  S angularVelocity{};
-};
-
-template <Scalar S>
-struct SoftRow : ContactAxes<S> {
-  /// How turning bends the contact points towards the centres, m: r . n, or 0 where the surface is a circle's
-  /// and turning does not move it.
-  S bendA{}, bendB{};
-  /// What the bounce shall leave, m/s; 0 for none.
-  S bounce{};
-  /// The largest normalSum of the step, and both sums added up over the substeps.
-  S normalMost{}, normalTotal{}, tangentTotal{};
-  /// Which contact of the Space it is.
-  std::uint32_t pair = 0;
-  std::uint16_t contact = 0;
-  /// Which softness: 0 between bodies that move, 1 against one that does not.
-  std::uint16_t softness = 0;
-};
-
-/// A damped spring, made to be stable for its substep.
-template <Scalar S>
-struct Softness {
-  S biasRate{};      ///< Part of an overlap that goes, 1/s.
-  S massScale{1};    ///< How hard the speed is corrected, in [0, 1].
-  S impulseScale{};  ///< How much of the accumulated impulse is given back, in [0, 1].
-};
-
 template <Scalar S>
 Softness<S> makeSoftness(S hertz, S dampingRatio, S substep);
 
+/// What the solver's blocks hold for a scalar.
+template <Scalar S>
+using SolverNumbers = PlainNumbers<S, !ScalarTraits<S>::kCheapProducts>;
+
 template <Scalar S>
 struct SoftSolver {
-  std::vector<SoftBody<S>> bodies;
-  std::vector<SoftDrive<S>> drives;
-  std::vector<SoftRow<S>> rows;
-  Softness<S> softness[2]{};
-  /// Of a substep: seconds, its inverse, what damping leaves, and the greatest speed of pushing apart, m/s.
-  S substep{}, perSubstep{}, kept{1}, pushSpeed{};
+  using Numbers = SolverNumbers<S>;
+  using Block = ContactBlock<Numbers>;
+  using Rest = BlockRest<Numbers>;
 
-  /// Builds the rows of one pair.
-  void preStep(const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA, std::uint32_t indexB,
-               const Body<S>& a, const Body<S>& b, bool roundA, bool roundB, S bounceThreshold);
-  void integrateVelocities();
-  void warmStart();
-  /// With springs.
-  void solve();
-  void integratePositions();
-  /// Without.
-  void relax();
+  /// Those that touch something; the first stands for all that never move.
+  std::vector<SoftBody<Numbers>> bodies;
+  std::vector<SoftDrive<Numbers>> drives;
+  /// Those that touch nothing, after the step.
+  std::vector<SoftBody<Numbers>> freeBodies;
+  /// The first blockCount are in use; the rest keep their memory.
+  std::vector<Block> blocks;
+  std::vector<Rest> rests;
+  std::uint32_t blockCount = 0;
+  /// Inverse moment times mass of each body, 1/m^2.
+  std::vector<S> momentsPerMass;
+  SoftConstants<Numbers> constants{};
+  ContactPasses<Numbers> passes;
+
+  SoftSolver();
+
+  /// Forgets the last step.
+  void clear();
+  /// Adds a body that touches something, and says as which.
+  std::uint32_t addBody(const Body<S>& body, const SoftDrive<Numbers>& drive);
+  /// Makes all substeps of a body that touches nothing.
+  void addFree(const Body<S>& body, const SoftDrive<Numbers>& drive, int substeps);
+  /// Adds a block, whose lanes hold anything.
+  void openBlock();
+  /// Empties the lanes of the last block that hold no pair.
+  void closeBlock(int lanes);
+  /// Puts a pair into a lane of the last block and gives its kept impulses to the bodies.
+  void addPair(int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
+               std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA, bool roundB,
+               S bounceThreshold);
+  /// Makes all substeps.
+  void run(int substeps);
+  /// After the last one: what bounces.
   void bounce();
-  /// Adds the substep's impulses to the totals.
-  void sum();
+  /// Writes the impulses back.
+  void store(std::vector<Pair<S>>& pairs) const;
+
+ private:
+  void integrateVelocity(SoftBody<Numbers>& body, SoftDrive<Numbers>& drive) const;
+  void integratePosition(SoftBody<Numbers>& body) const;
+  void pass(ContactPass<Numbers> kernel);
 };
 
 #ifndef SAMESTEP_FIXED_ONLY

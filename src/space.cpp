@@ -76,7 +76,7 @@ template <Scalar S>
 void check(const Settings<S>& s) {
   require<Fault::InvalidIter>(s.iterations >= 1 && s.iterations <= 1000);
   require<Fault::InvalidIter>(s.substeps >= 1 && s.substeps <= 100, "Substeps must be from 1 to 100.");
-  require<Fault::ValueOutOfRange>(s.solver <= SolverKind::softStep);
+  require<Fault::ValueOutOfRange>(s.solver <= SolverKind::softStep && s.precision <= ContactPrecision::fast);
   require<Fault::ValueOutOfRange>(within(s.gravity, kMaxAcceleration<S>));
   requireIn(s.damping, S(0), S(1));
   requireIn(s.collisionSlop, S(0), S(256));
@@ -105,6 +105,13 @@ template <Scalar S>
 void Space<S>::setIterations(int iterations) {
   Settings<S> next = state_.settings;
   next.iterations = iterations;
+  setSettings(next);
+}
+
+template <Scalar S>
+void Space<S>::setPrecision(ContactPrecision precision) {
+  Settings<S> next = state_.settings;
+  next.precision = precision;
   setSettings(next);
 }
 

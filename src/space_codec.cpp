@@ -16,7 +16,7 @@ namespace {
 template <Scalar S>
 const char* flawOf(const Settings<S>& settings) {
   const auto in = [](S value, S low, S high) { return value >= low && value <= high; };
-  const bool both = settings.solver <= SolverKind::softStep &&
+  const bool both = settings.solver <= SolverKind::softStep && settings.precision <= ContactPrecision::fast &&
                     within(settings.gravity, kMaxAcceleration<S>) && in(settings.damping, S(0), S(1)) &&
                     settings.worldExtent > S(0) && settings.worldExtent <= kMaxWorldExtent<S>;
   const bool sequential = settings.iterations >= 1 && settings.iterations <= 1000 &&

@@ -9,6 +9,7 @@
 #include <samestep/space.h>
 
 #include "contact_groups.h"
+#include "fast_step.h"
 #include "push_contacts.h"
 #include "sequential_impulse.h"
 #include "soft_step.h"
@@ -105,6 +106,7 @@ struct Space<S>::Impl {
   // Scratch: of one step.
   ImpulseSolver<S> solver;
   SoftSolver<S> soft;
+  FastSolver<S> fast;
   ContactGroups groups;
   std::vector<std::uint32_t> solvedPairs;
   std::vector<std::uint32_t> groupOrder;

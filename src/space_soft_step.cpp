@@ -10,102 +10,139 @@ void Space<S>::softPreStep(S dt) {
   Impl& impl = *impl_;
   SoftSolver<S>& soft = impl.soft;
   const Settings<S>& settings = state_.settings;
-  soft.rows.clear();
+  const S substep = dt / S(settings.substeps);
+  const S perSubstep = reciprocal(max(substep, ratio<S>(1, 1 << 14)));
+  const S hertz = min(settings.contactHertz, perSubstep * ratio<S>(1, 4));
+  soft.constants = {{makeSoftness(hertz, settings.contactDamping, substep),
+                     makeSoftness(S(2) * hertz, settings.contactDamping, substep)},
+                    substep,
+                    perSubstep,
+                    settings.contactPushSpeed,
+                    kMaxSum<S>,
+                    S(0)};
+  softFindGroups();
+  softTakeBodies(dt);
+  softTakePairs();
+  endStage(Stage::preStep);
+}
+
+/// Sorts the pairs to be solved into groups that share no body, and marks their bodies.
+template <Scalar S>
+void Space<S>::softFindGroups() {
+  Impl& impl = *impl_;
   impl.groups.clear(state_.bodies.slots());
   impl.solvedPairs.clear();
-  const auto bodyIndex = [&](ShapeId id) { return impl.traits[id.index].body; };
-  const auto round = [&](ShapeId id) { return impl.traits[id.index].round; };
+  impl.solverIndex.assign(state_.bodies.slots(), Impl::kNone);
   for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
     const Pair<S>& pair = state_.pairs[i];
     if (pair.solved == 0) continue;
-    const std::uint32_t a = bodyIndex(pair.a);
-    const std::uint32_t b = bodyIndex(pair.b);
+    const std::uint32_t a = impl.traits[pair.a.index].body;
+    const std::uint32_t b = impl.traits[pair.b.index].body;
+    impl.solverIndex[a] = impl.solverIndex[b] = 0;
     impl.solvedPairs.push_back(i);
-    impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic());
+    impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic(),
+                    pair.count == 1);
   }
   impl.groups.sort(impl.groupOrder);
-  impl.solverBodies.clear();
-  impl.solverIndex.assign(state_.bodies.slots(), Impl::kNone);
-  // By rising slot: what is added together is near in memory.
+}
+
+/// Makes the solver's bodies, by rising slot, so that what was added together is near in memory: the first
+/// stands for all that never move, and those that touch nothing make their substeps by themselves.
+template <Scalar S>
+void Space<S>::softTakeBodies(S dt) {
+  Impl& impl = *impl_;
+  SoftSolver<S>& soft = impl.soft;
+  const S substep = soft.constants.substep;
+  const S keptInSubstep = damping() == S(1) ? S(1) : pow(damping(), substep);
+  const S keptInStep = damping() == S(1) ? S(1) : pow(damping(), dt);
+  soft.clear();
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
-    if (state_.bodies.aliveAt(i)) impl.solverIndexOf(i);
-  }
-  for (const std::uint32_t ordinal : impl.groupOrder) {
-    const std::uint32_t index = impl.solvedPairs[ordinal];
-    const Pair<S>& pair = state_.pairs[index];
-    const std::uint32_t a = bodyIndex(pair.a);
-    const std::uint32_t b = bodyIndex(pair.b);
-    soft.preStep(pair, index, impl.solverIndex[a], impl.solverIndex[b], state_.bodies.valueAt(a),
-                 state_.bodies.valueAt(b), round(pair.a), round(pair.b), settings.bounceThreshold);
-  }
-
-  soft.substep = dt / S(settings.substeps);
-  soft.perSubstep = reciprocal(max(soft.substep, ratio<S>(1, 1 << 14)));
-  soft.pushSpeed = settings.contactPushSpeed;
-  soft.kept = damping() == S(1) ? S(1) : pow(damping(), soft.substep);
-  const S hertz = min(settings.contactHertz, soft.perSubstep * ratio<S>(1, 4));
-  soft.softness[0] = makeSoftness(hertz, settings.contactDamping, soft.substep);
-  soft.softness[1] = makeSoftness(S(2) * hertz, settings.contactDamping, soft.substep);
-
-  soft.bodies.clear();
-  soft.drives.clear();
-  for (const std::uint32_t index : impl.solverBodies) {
-    Body<S>& body = state_.bodies.valueAt(index);
-    SoftDrive<S> drive;
+    if (!state_.bodies.aliveAt(i)) continue;
+    Body<S>& body = state_.bodies.valueAt(i);
+    SoftDrive<SolverNumbers<S>> drive{};
+    drive.kept = S(1);
     if (body.type() == BodyType::staticBody) {
       // Nothing moves it, and no function is asked to.
     } else if (body.velocityFunc() != 0) [[unlikely]] {
-      callVelocityFunc(index, damping() == S(1) ? S(1) : pow(damping(), dt), dt);
+      callVelocityFunc(i, keptInStep, dt);
     } else if (body.isDynamic()) {
       const typename Body<S>::Motion motion = body.acceleration(gravity());
-      drive.velocity = motion.velocity * soft.substep;
-      drive.angularVelocity = motion.angularVelocity * soft.substep;
+      drive.push[0] = motion.velocity.x * substep;
+      drive.push[1] = motion.velocity.y * substep;
+      drive.push[2] = motion.angularVelocity * substep;
+      drive.kept = keptInSubstep;
     }
-    soft.bodies.push_back({body.velocity_, body.angularVelocity_, {}, S(0), S(0)});
-    soft.drives.push_back(drive);
     body.force_ = {};
     body.torque_ = S(0);
+    if (body.type() == BodyType::staticBody) continue;
+    if (impl.solverIndex[i] == Impl::kNone) {
+      soft.addFree(body, drive, state_.settings.substeps);
+    } else {
+      impl.solverIndex[i] = soft.addBody(body, drive);
+    }
   }
-  endStage(Stage::preStep);
+}
+
+/// Puts the pairs into blocks, group by group.
+template <Scalar S>
+void Space<S>::softTakePairs() {
+  Impl& impl = *impl_;
+  SoftSolver<S>& soft = impl.soft;
+  std::uint32_t next = 0;
+  for (std::uint32_t group = 0; group < ContactGroups::kGroups; ++group) {
+    // The pairs of the last group may share bodies.
+    const int lanes = group == ContactGroups::kGroups - 1 ? 1 : kBlockLanes;
+    int lane = lanes;
+    for (const std::uint32_t end = next + impl.groups.size(group); next < end; ++next, ++lane) {
+      if (lane == lanes) {
+        soft.openBlock();
+        lane = 0;
+      }
+      const std::uint32_t index = impl.solvedPairs[impl.groupOrder[next]];
+      const Pair<S>& pair = state_.pairs[index];
+      const ShapeTraits<S>& shapeA = impl.traits[pair.a.index];
+      const ShapeTraits<S>& shapeB = impl.traits[pair.b.index];
+      const std::uint32_t a = shapeA.body;
+      const std::uint32_t b = shapeB.body;
+      soft.addPair(lane, pair, index, impl.solverIndex[a], impl.solverIndex[b], state_.bodies.valueAt(a),
+                   state_.bodies.valueAt(b), shapeA.round, shapeB.round, state_.settings.bounceThreshold);
+      if (lane + 1 == lanes || next + 1 == end) soft.closeBlock(lane + 1);
+    }
+  }
 }
 
 template <Scalar S>
 void Space<S>::softSolve() {
-  Impl& impl = *impl_;
-  SoftSolver<S>& soft = impl.soft;
-  for (int i = 0; i < state_.settings.substeps; ++i) {
-    soft.integrateVelocities();
-    soft.warmStart();
-    soft.solve();
-    soft.integratePositions();
-    soft.relax();
-    soft.sum();
+  SoftSolver<S>& soft = impl_->soft;
+  const int substeps = state_.settings.substeps;
+  bool solved = false;
+  if (state_.settings.precision == ContactPrecision::fast && soft.blockCount != 0) {
+    solved = impl_->fast.run(soft, substeps);
+    if (!solved) ++accurateInstead_;
   }
+  if (!solved) soft.run(substeps);
   soft.bounce();
-
-  for (const SoftRow<S>& row : soft.rows) {
-    Contact<S>& contact = state_.pairs[row.pair].contacts[row.contact];
-    contact.normalSpeed = row.normalSum * row.normalScale;
-    contact.tangentSpeed = row.tangentSum * row.tangentScale;
-    contact.normalTotal = min(row.normalTotal, kMaxSum<S>) * row.normalScale;
-    contact.tangentTotal = clamp(row.tangentTotal, -kMaxSum<S>, kMaxSum<S>) * row.tangentScale;
-  }
+  soft.store(state_.pairs);
   endStage(Stage::solve);
 }
 
 template <Scalar S>
 void Space<S>::softFinish(S dt) {
   Impl& impl = *impl_;
-  for (std::size_t i = 0; i < impl.solverBodies.size(); ++i) {
-    const std::uint32_t index = impl.solverBodies[i];
-    Body<S>& body = state_.bodies.valueAt(index);
+  std::size_t nextFree = 0;
+  for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
+    if (!state_.bodies.aliveAt(i)) continue;
+    Body<S>& body = state_.bodies.valueAt(i);
     if (body.type() == BodyType::staticBody) continue;
-    const SoftBody<S>& solved = impl.soft.bodies[i];
-    if (body.isDynamic()) impl.held[index] |= body.holdVelocity({solved.velocity, solved.angularVelocity});
+    const std::uint32_t index = impl.solverIndex[i];
+    const auto& solved = index == Impl::kNone ? impl.soft.freeBodies[nextFree++] : impl.soft.bodies[index];
+    if (body.isDynamic()) {
+      impl.held[i] |= body.holdVelocity({{solved.velocity[0], solved.velocity[1]}, solved.velocity[2]});
+    }
     if (body.positionFunc() != 0) [[unlikely]] {
-      callPositionFunc(index, dt);
+      callPositionFunc(i, dt);
     } else {
-      impl.held[index] |= body.holdMoved(solved.moved, solved.turned, worldExtent());
+      impl.held[i] |= body.holdMoved({solved.moved[0], solved.moved[1]}, solved.moved[2], worldExtent());
     }
   }
   endStage(Stage::integratePositions);

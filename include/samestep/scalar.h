@@ -25,6 +25,8 @@ template <class Rep, int kFractionBits, class Overflow>
 struct ScalarTraits<BasicFixed<Rep, kFractionBits, Overflow>> {
   static constexpr bool kSupported = true;
   static constexpr ScalarKind kKind = ScalarKind::fixed;
+  /// Whether it is cheaper to multiply again than to keep a product in memory.
+  static constexpr bool kCheapProducts = false;
 };
 
 #ifndef SAMESTEP_FIXED_ONLY
@@ -32,6 +34,7 @@ template <>
 struct ScalarTraits<double> {
   static constexpr bool kSupported = true;
   static constexpr ScalarKind kKind = ScalarKind::float64;
+  static constexpr bool kCheapProducts = true;
 };
 #endif
 

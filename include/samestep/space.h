@@ -28,11 +28,22 @@ enum class SolverKind : std::uint8_t {
   softStep = 1,
 };
 
+/// What the soft step computes contacts with, where the scalar leaves a choice.
+enum class ContactPrecision : std::uint8_t {
+  /// In the scalar itself.
+  accurate = 0,
+  /// Fixed: in integers of 32 bits, several at a time: the accuracy of a float, relative to the fastest body
+  /// that touches anything. A step in which a number would not fit is made accurately, see
+  /// Space::accurateInstead. Double: no difference.
+  fast = 1,
+};
+
 /// What the MIS calls the state variables of a Space that a user sets, and those of the soft step.
 template <Scalar S>
 struct Settings {
   SolverKind solver = SolverKind::sequentialImpulses;
-  std::uint8_t unused[3] = {};
+  ContactPrecision precision = ContactPrecision::accurate;
+  std::uint8_t unused[2] = {};
   /// Sequential impulses: how often all contacts are solved in a step, 1 to 1000.
   std::int32_t iterations = 10;
   /// Soft step: how many substeps a step has, 1 to 100.
@@ -63,6 +74,7 @@ struct Settings {
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("solver", self.solver);
+    visit("precision", self.precision);
     visit("iterations", self.iterations);
     visit("substeps", self.substeps);
     visit("collisionPersistence", self.collisionPersistence);
@@ -236,6 +248,8 @@ class Space {
   void setWorldExtent(S extent);
   /// @throws ValueOutOfRange for a value that names no solver
   void setSolver(SolverKind kind);
+  /// @throws ValueOutOfRange for a value that names no precision
+  void setPrecision(ContactPrecision precision);
   /// @throws InvalidIter outside [1, 100]
   void setSubsteps(int substeps);
   /// @param hertz    cycles per second, in [0, 1000]; 0: hard contacts that do not push overlaps apart
@@ -439,6 +453,9 @@ class Space {
   std::span<const RangeEvent> rangeEvents() const { return rangeEvents_; }
   /// Iteration limits reached and the like.
   const CollisionStats& collisionStats() const { return collisionStats_; }
+  /// How many steps were to be fast but had numbers that do not fit, and were made accurately: see
+  /// ContactPrecision. The same on every machine.
+  std::uint64_t accurateInstead() const { return accurateInstead_; }
   /// Called after each stage of a step; nullptr for none, which costs nothing.
   void setStageObserver(StageObserver observer, void* data = nullptr);
 
@@ -556,6 +573,9 @@ class Space {
   void callPositionFunc(std::uint32_t index, S dt);
   void callVelocityFunc(std::uint32_t index, S kept, S dt);
   void softPreStep(S dt);
+  void softFindGroups();
+  void softTakeBodies(S dt);
+  void softTakePairs();
   void softSolve();
   void softFinish(S dt);
   S pairMargin() const;
@@ -596,6 +616,7 @@ class Space {
   Impl* impl_;
   std::vector<RangeEvent> rangeEvents_;
   CollisionStats collisionStats_{};
+  std::uint64_t accurateInstead_ = 0;
   std::int32_t locked_ = 0;
 };
 

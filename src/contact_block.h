@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+/// The records that the soft step's kernels work on. Plain arrays: a kernel built for one processor must
+/// share no inline function with the rest of the library.
+namespace samestep {
+
+/// Pairs side by side in a block: as many as the widest kernel takes at once.
+inline constexpr int kBlockLanes = 4;
+
+/// What the numbers of a block are: a scalar as it is.
+template <class S, bool kSpins>
+struct PlainNumbers {
+  using Coefficient = S;  ///< Directions, arms, masses.
+  using Speed = S;        ///< Of a body.
+  using Sum = S;          ///< Impulses and what is found from speeds.
+  /// Whether the spin per impulse is kept, where products are dear.
+  static constexpr bool kStoresSpins = kSpins;
+};
+
+/// Integers of 32 bits in units of powers of two, sums of 64 bits. Speeds and impulses have one unit for the
+/// whole step, chosen by the fastest body, and ways another; a body's turning is kept as the way of a point
+/// at its radius, a power of two no less than the arms of its contacts.
+struct FastNumbers {
+  using Coefficient = std::int32_t;
+  using Speed = std::int32_t;
+  using Sum = std::int64_t;
+  static constexpr bool kStoresSpins = true;
+  /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of spins; of friction;
+  /// of rates, speeds by ways.
+  static constexpr int kUnitBits = 30, kSpinBits = 26, kFrictionBits = 22, kRateBits = 22;
+  /// What speeds, ways and changes of impulses must stay below in size: then no product leaves 64 bits.
+  static constexpr std::int64_t kRange = std::int64_t{1} << 30;
+};
+
+/// One body in the substeps.
+template <class N>
+struct alignas(4 * sizeof(typename N::Speed)) SoftBody {
+  /// x, y, angular, 0: m/s, rad/s.
+  typename N::Speed velocity[4];
+  /// Since the step began: x, y, m; the angle, rad; half its square: how far turning moves a point towards
+  /// the centre, per metre.
+  typename N::Speed moved[4];
+};
+
+/// What else a substep needs of a body.
+template <class N>
+struct alignas(4 * sizeof(typename N::Speed)) SoftDrive {
+  /// Added to the velocity by each substep.
+  typename N::Speed push[4];
+  /// The velocity of the substep before contacts: what it is less by holds the impulses of the contacts.
+  typename N::Speed base[4];
+  /// What damping leaves of a velocity in one substep.
+  typename N::Coefficient kept;
+};
+
+/// One axis of a contact point, the normal n or the tangent t = perp(n), of each lane. An impulse u is the
+/// change of the relative speed that the masses alone would make: no mass appears in the loop.
+template <class N, bool = N::kStoresSpins>
+struct BlockAxis {
+  /// r x axis of both bodies, m.
+  typename N::Coefficient armA[kBlockLanes], armB[kBlockLanes];
+  /// The u that changes the speed at the point by 1, in [0, 1].
+  typename N::Coefficient mass[kBlockLanes];
+  /// Accumulated u, m/s.
+  typename N::Sum sum[kBlockLanes];
+};
+template <class N>
+struct BlockAxis<N, true> : BlockAxis<N, false> {
+  /// The spin that a u of 1 gives each body, 1/m.
+  typename N::Coefficient spinA[kBlockLanes], spinB[kBlockLanes];
+};
+
+template <class N>
+struct BlockPoint {
+  BlockAxis<N> normal, tangent;
+  /// Between the surfaces along the normal when the step began, m.
+  typename N::Coefficient separation[kBlockLanes];
+};
+
+/// How an impulse turns the bodies, 1/m^2: spin = moment * arm * u.
+template <class N, bool = N::kStoresSpins>
+struct BlockMoments {
+  typename N::Coefficient momentA[kBlockLanes], momentB[kBlockLanes];
+};
+template <class N>
+struct BlockMoments<N, true> {};
+
+/// Up to four pairs that share no body but such as nothing moves.
+template <class N>
+struct alignas(64) ContactBlock {
+  std::uint32_t bodyA[kBlockLanes], bodyB[kBlockLanes];
+  /// Points of each lane, and the most of them.
+  std::uint8_t count[kBlockLanes], points;
+  /// A bit per lane: whether contacts leave A or B as it is; whether its surface is round, so that turning
+  /// does not move it; whether the contact is one with a body that nothing moves.
+  std::uint8_t fixedA, fixedB, roundA, roundB, stiff;
+  /// Whether any point bounces.
+  std::uint8_t bounces;
+  alignas(32) typename N::Coefficient normalX[kBlockLanes];
+  typename N::Coefficient normalY[kBlockLanes];
+  /// The part of u that changes the speed of A; the rest that of B.
+  typename N::Coefficient shareA[kBlockLanes];
+  BlockMoments<N> moments;
+  typename N::Coefficient friction[kBlockLanes];
+  /// The surface's own speed along the tangent, m/s.
+  typename N::Speed surface[kBlockLanes];
+  BlockPoint<N> point[2];
+};
+
+/// What a block needs once in a while.
+template <class N>
+struct alignas(32) BlockRest {
+  /// The sums added up over the substeps.
+  typename N::Sum normalTotal[2][kBlockLanes], tangentTotal[2][kBlockLanes];
+  /// What a bounce shall leave, m/s; 0 for none.
+  typename N::Sum bounce[2][kBlockLanes];
+  /// Which pair of the Space each lane is; kNoPair for an empty one.
+  std::uint32_t pair[kBlockLanes];
+  static constexpr std::uint32_t kNoPair = 0xffffffffu;
+};
+
+/// A damped spring, made to be stable for its substep.
+template <class T>
+struct Softness {
+  T biasRate;      ///< Part of an overlap that goes, 1/s.
+  T massScale;     ///< How hard the speed is corrected, in [0, 1].
+  T impulseScale;  ///< How much of the accumulated impulse is given back, in [0, 1].
+};
+
+/// Of a substep.
+template <class N>
+struct SoftConstants {
+  /// Between bodies that move, and against one that does not.
+  Softness<typename N::Coefficient> softness[2];
+  /// Seconds, and its inverse.
+  typename N::Coefficient substep, perSubstep;
+  /// The greatest speed of pushing apart, m/s.
+  typename N::Speed pushSpeed;
+  /// The greatest accumulated u, m/s.
+  typename N::Sum mostSum;
+  /// The greatest distance that a kernel of limited range tells apart, m.
+  typename N::Speed mostGap;
+};
+
+/// Passes over `count` blocks, in order.
+/// @return not 0 where a number left the kernel's range: the results are then worth nothing
+template <class N>
+using ContactPass = std::uint64_t (*)(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32_t count,
+                                      SoftBody<N>* bodies, const SoftConstants<N>& constants);
+
+/// The passes of one kernel.
+template <class N>
+struct ContactPasses {
+  /// With springs.
+  ContactPass<N> solve;
+  /// Without; adds the substep's sums to the totals.
+  ContactPass<N> relax;
+};
+
+}  // namespace samestep

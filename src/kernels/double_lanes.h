@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "contact_block.h"
+
+namespace samestep {
+namespace {
+
+/// What is the same for every number of doubles side by side: element by element the arithmetic of double.
+template <class Vectors>
+struct DoubleLanes {
+  using Numbers = PlainNumbers<double, false>;
+  using Body = SoftBody<Numbers>;
+  using V = typename Vectors::Numbers;
+  using M = typename Vectors::Masks;
+  static constexpr int kWidth = sizeof(V) / sizeof(double);
+
+  [[gnu::always_inline]] static V zero() { return V{}; }
+  [[gnu::always_inline]] static V whole() { return all(1.0); }
+  [[gnu::always_inline]] static V all(double x) { return x - V{}; }
+  [[gnu::always_inline]] static V allSum(double x) { return all(x); }
+  [[gnu::always_inline]] static V load(const double* from) { return *reinterpret_cast<const V*>(from); }
+  [[gnu::always_inline]] static void store(double* to, V v) { *reinterpret_cast<V*>(to) = v; }
+  [[gnu::always_inline]] static V select(M mask, V a, V b) { return mask ? a : b; }
+  [[gnu::always_inline]] static V greater(V a, V b) { return select(a < b, b, a); }
+  [[gnu::always_inline]] static V within(V x, V low, V high) {
+    return select(x < low, low, select(high < x, high, x));
+  }
+  [[gnu::always_inline]] static V dot2(V a, V b, V c, V d) { return a * b + c * d; }
+  [[gnu::always_inline]] static V cross2(V a, V b, V c, V d) { return a * b - c * d; }
+  [[gnu::always_inline]] static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
+    return (a0 * b0 + a1 * b1) + (a2 * b2 + a3 * b3);
+  }
+  [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
+  [[gnu::always_inline]] static V product(V a, V b) { return a * b; }
+  [[gnu::always_inline]] static V frictionLimit(V friction, V sum) { return friction * sum; }
+  [[gnu::always_inline]] static V rate(V way, double rate) { return way * all(rate); }
+  [[gnu::always_inline]] static V rate(V way, V rate) { return way * rate; }
+  template <class Axis>
+  [[gnu::always_inline]] static V spinA(const BlockMoments<Numbers>& of, const Axis&, int lane, V arm,
+                                        V change) {
+    return load(of.momentA + lane) * (arm * change);
+  }
+  template <class Axis>
+  [[gnu::always_inline]] static V spinB(const BlockMoments<Numbers>& of, const Axis&, int lane, V arm,
+                                        V change) {
+    return load(of.momentB + lane) * (arm * change);
+  }
+  static void note(const char*, V) {}
+  /// A double leaves no range.
+  [[gnu::always_inline]] static V checked(V v) { return v; }
+  static std::uint64_t left() { return 0; }
+
+  /// All ones in the lanes whose bit is set.
+  [[gnu::always_inline]] static M mask(std::uint8_t bits, int lane) {
+    return *reinterpret_cast<const M*>(kMasks[bits] + lane);
+  }
+  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, V v) {
+    return reinterpret_cast<V>(reinterpret_cast<M>(v) & ~mask(bits, lane));
+  }
+  [[gnu::always_inline]] static V soften(const Softness<V>& soft, V full, V before) {
+    return soft.massScale * full + soft.impulseScale * before;
+  }
+  [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane,
+                                                     const Softness<double>* of) {
+    const M mask = DoubleLanes::mask(stiff, lane);
+    return {select(mask, all(of[1].biasRate), all(of[0].biasRate)),
+            select(mask, all(of[1].massScale), all(of[0].massScale)),
+            select(mask, all(of[1].impulseScale), all(of[0].impulseScale))};
+  }
+
+ private:
+  static constexpr std::int64_t kIn = -1;
+  alignas(32) static constexpr std::int64_t kMasks[16][kBlockLanes] = {
+      {0, 0, 0, 0},     {kIn, 0, 0, 0},     {0, kIn, 0, 0},     {kIn, kIn, 0, 0},
+      {0, 0, kIn, 0},   {kIn, 0, kIn, 0},   {0, kIn, kIn, 0},   {kIn, kIn, kIn, 0},
+      {0, 0, 0, kIn},   {kIn, 0, 0, kIn},   {0, kIn, 0, kIn},   {kIn, kIn, 0, kIn},
+      {0, 0, kIn, kIn}, {kIn, 0, kIn, kIn}, {0, kIn, kIn, kIn}, {kIn, kIn, kIn, kIn},
+  };
+};
+
+}  // namespace
+}  // namespace samestep

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <immintrin.h>
+
+#include "fast_lanes.h"
+
+namespace samestep {
+namespace {
+
+/// Two at a time: SSE4.2.
+struct TwoIntegers {
+  using V [[gnu::vector_size(16), gnu::may_alias]] = std::int64_t;
+  using U [[gnu::vector_size(16), gnu::may_alias]] = std::uint64_t;
+  using Loose [[gnu::vector_size(16), gnu::may_alias, gnu::aligned(8)]] = std::int64_t;
+  using Body = SoftBody<FastNumbers>;
+
+  [[gnu::always_inline]] static V widen(const std::int32_t* from) {
+    return widened(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)));
+  }
+  [[gnu::always_inline]] static V multiply(V a, V b) {
+    return reinterpret_cast<V>(_mm_mul_epi32(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
+  }
+  template <int kBits>
+  [[gnu::always_inline]] static V rounded(V x) {
+    // SSE shifts unsigned numbers only.
+    constexpr std::uint64_t kBias = std::uint64_t{1} << 63;
+    const U raised = reinterpret_cast<U>(x) + (kBias + (std::uint64_t{1} << (kBits - 1)));
+    return reinterpret_cast<V>(((raised - (reinterpret_cast<U>(x) >> 63)) >> kBits) - (kBias >> kBits));
+  }
+  template <int kBits>
+  [[gnu::always_inline]] static V down(V x) {
+    return reinterpret_cast<V>(reinterpret_cast<U>(x) >> kBits);
+  }
+  [[gnu::always_inline]] static V mask(int bits) { return V{-(bits & 1), -(bits >> 1 & 1)}; }
+  [[gnu::always_inline]] static std::uint64_t at(V v, int i) { return static_cast<std::uint64_t>(v[i]); }
+
+  [[gnu::always_inline]] static void gather(const Body* bodies, std::int32_t (Body::*part)[4],
+                                            const std::uint32_t* at, V& x, V& y, V& z, V& w) {
+    const __m128i a = _mm_load_si128(reinterpret_cast<const __m128i*>(bodies[at[0]].*part));
+    const __m128i b = _mm_load_si128(reinterpret_cast<const __m128i*>(bodies[at[1]].*part));
+    const __m128i xy = _mm_unpacklo_epi32(a, b);
+    const __m128i zw = _mm_unpackhi_epi32(a, b);
+    x = widened(xy);
+    y = widened(_mm_unpackhi_epi64(xy, xy));
+    z = widened(zw);
+    w = widened(_mm_unpackhi_epi64(zw, zw));
+  }
+  [[gnu::always_inline]] static void scatter(Body* bodies, const std::uint32_t* at, int fixed, V x, V y,
+                                             V turn) {
+    for (int i = 0; i < 2; ++i) {
+      if ((fixed >> i & 1) != 0) continue;
+      std::int32_t* to = bodies[at[i]].velocity;
+      to[0] = static_cast<std::int32_t>(x[i]);
+      to[1] = static_cast<std::int32_t>(y[i]);
+      to[2] = static_cast<std::int32_t>(turn[i]);
+    }
+  }
+
+ private:
+  [[gnu::always_inline]] static V widened(__m128i x) { return reinterpret_cast<V>(_mm_cvtepi32_epi64(x)); }
+};
+
+}  // namespace
+}  // namespace samestep

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#include "require_ieee.h"
+
+#include "double_lanes2.h"
+#include "kernels.h"
+#include "solve_contacts.h"
+
+namespace samestep::kernels {
+
+const ContactPasses<PlainNumbers<double, false>> doubleBy2 = kPassesOf<DoubleLanes2>;
+
+}  // namespace samestep::kernels

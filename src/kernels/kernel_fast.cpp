@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#include "fast_lanes.h"
+#include "kernels.h"
+#include "solve_contacts.h"
+
+namespace samestep::kernels {
+
+const ContactPasses<FastNumbers> fastBy1 = kPassesOf<FastLanes<OneInteger>>;
+
+}  // namespace samestep::kernels

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Built for SSE4.2 where the compiler knows it: see kernel_double_avx2.cpp.
+#include "kernels.h"
+
+#ifdef __SSE4_2__
+#include "fast_lanes2.h"
+#include "solve_contacts.h"
+
+namespace samestep::kernels {
+
+const ContactPasses<FastNumbers>* const fastSse42 = &kPassesOf<FastLanes<TwoIntegers>>;
+
+}  // namespace samestep::kernels
+#else
+namespace samestep::kernels {
+
+const ContactPasses<FastNumbers>* const fastSse42 = nullptr;
+
+}  // namespace samestep::kernels
+#endif

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "contact_block.h"
+
+/// The kernels that were built, by what they compute with. All of one kind give the same bits. A pointer is
+/// null where the compiler does not know the processor's instructions; only a processor that has them may be
+/// sent there.
+namespace samestep::kernels {
+
+/// Two doubles at a time, in vectors that every compiler translates.
+extern const ContactPasses<PlainNumbers<double, false>> doubleBy2;
+extern const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2;
+
+/// One integer at a time.
+extern const ContactPasses<FastNumbers> fastBy1;
+extern const ContactPasses<FastNumbers>* const fastSse42;
+extern const ContactPasses<FastNumbers>* const fastAvx2;
+
+}  // namespace samestep::kernels

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "contact_block.h"
+
+/// The pass over contact blocks, written once for every kernel. `L` says what a group of lanes is: its vector
+/// V of kWidth numbers and the operations on it. All of it has internal linkage, since each kernel is built
+/// with flags of its own.
+namespace samestep {
+namespace {
+
+/// Three numbers of a body, of each lane.
+template <class L>
+struct LaneMotion {
+  typename L::V x, y, turn;
+};
+
+/// One pair of each lane: friction of all points against the normal impulses so far, then the normals, which
+/// have the last word.
+template <class L, bool kSprings, class N = typename L::Numbers>
+[[gnu::always_inline]] inline void solveLanes(ContactBlock<N>& block, BlockRest<N>& rest, int lane,
+                                              SoftBody<N>* bodies, const SoftConstants<N>& constants,
+                                              L& lanes) {
+  using V = typename L::V;
+  LaneMotion<L> velocityA, velocityB, movedA, movedB;
+  V bendA, bendB;
+  L::gatherVelocity(bodies, block.bodyA + lane, velocityA.x, velocityA.y, velocityA.turn);
+  L::gatherVelocity(bodies, block.bodyB + lane, velocityB.x, velocityB.y, velocityB.turn);
+  L::gatherMoved(bodies, block.bodyA + lane, movedA.x, movedA.y, movedA.turn, bendA);
+  L::gatherMoved(bodies, block.bodyB + lane, movedB.x, movedB.y, movedB.turn, bendB);
+  bendA = L::unless(block.roundA, lane, bendA);
+  bendB = L::unless(block.roundB, lane, bendB);
+
+  const V nx = L::load(block.normalX + lane);
+  const V ny = L::load(block.normalY + lane);
+  const V friction = L::load(block.friction + lane);
+  const V dx = velocityB.x - velocityA.x;
+  const V dy = velocityB.y - velocityA.y;
+  V normalSpeed = L::dot2(nx, dx, ny, dy);
+  V tangentSpeed = L::cross2(nx, dy, ny, dx) + L::load(block.surface + lane);
+  V normalPart = L::zero();
+  V tangentPart = L::zero();
+  const int points = L::kWidth == 1 ? block.count[lane] : block.points;
+
+  for (int i = 0; i < points; ++i) {
+    auto& axis = block.point[i].tangent;
+    const V armA = L::load(axis.armA + lane);
+    const V armB = L::load(axis.armB + lane);
+    const V before = L::load(axis.sum + lane);
+    const V limit = L::frictionLimit(friction, L::load(block.point[i].normal.sum + lane));
+    const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
+    const V sum = L::within(before - L::product(L::load(axis.mass + lane), speed), -limit, limit);
+    L::store(axis.sum + lane, sum);
+    const V change = lanes.checked(sum - before);
+    tangentSpeed = tangentSpeed + change;
+    tangentPart = tangentPart + change;
+    velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
+    velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
+    L::note("soft step: friction limit", limit);
+    L::note("soft step: relative speed", speed);
+    if constexpr (!kSprings) {
+      L::store(rest.tangentTotal[i] + lane, L::load(rest.tangentTotal[i] + lane) + sum);
+    }
+  }
+
+  const V apart = L::dot2(nx, movedB.x - movedA.x, ny, movedB.y - movedA.y);
+  for (int i = 0; i < points; ++i) {
+    auto& axis = block.point[i].normal;
+    const V armA = L::load(axis.armA + lane);
+    const V armB = L::load(axis.armB + lane);
+    const V before = L::load(axis.sum + lane);
+    // The arms of the tangent are r . n: how far a bend comes nearer.
+    const V separation = L::near(L::load(block.point[i].separation + lane) + apart +
+                                     L::dotOf4(armB, movedB.turn, -armA, movedA.turn,  //
+                                               L::load(block.point[i].tangent.armA + lane), bendA,
+                                               -L::load(block.point[i].tangent.armB + lane), bendB),
+                                 constants);
+    // Not touching yet: may come as near as it is within this substep.
+    const V gap = L::rate(separation, constants.perSubstep);
+    const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
+    V correction;
+    if constexpr (kSprings) {
+      const auto soft = L::softness(block.stiff, lane, constants.softness);
+      const auto free = separation > L::zero();
+      const V push = L::greater(L::rate(separation, soft.biasRate), L::all(-constants.pushSpeed));
+      const V target = L::select(free, gap, push);
+      const V full = L::product(L::load(axis.mass + lane), lanes.checked(speed + target));
+      correction = L::select(free, full, L::soften(soft, full, before));
+    } else {
+      correction = L::product(L::load(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
+    }
+    const V sum = L::within(before - correction, L::zero(), L::allSum(constants.mostSum));
+    L::store(axis.sum + lane, sum);
+    const V change = lanes.checked(sum - before);
+    normalSpeed = normalSpeed + change;
+    normalPart = normalPart + change;
+    velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
+    velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
+    L::note("soft step: relative speed", speed);
+    L::note("soft step: target speed", gap);
+    if constexpr (!kSprings) {
+      L::store(rest.normalTotal[i] + lane, L::load(rest.normalTotal[i] + lane) + sum);
+    }
+  }
+
+  normalPart = lanes.checked(normalPart);
+  tangentPart = lanes.checked(tangentPart);
+  const V x = L::cross2(nx, normalPart, ny, tangentPart);
+  const V y = L::dot2(ny, normalPart, nx, tangentPart);
+  const V shareA = L::load(block.shareA + lane);
+  const V shareB = L::whole() - shareA;
+  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane, velocityA.x - L::product(shareA, x),
+                        velocityA.y - L::product(shareA, y), velocityA.turn);
+  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane, velocityB.x + L::product(shareB, x),
+                        velocityB.y + L::product(shareB, y), velocityB.turn);
+}
+
+template <class L, bool kSprings, class N = typename L::Numbers>
+std::uint64_t passOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32_t count, SoftBody<N>* bodies,
+                       const SoftConstants<N>& constants) {
+  L lanes;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (int lane = 0; lane < kBlockLanes; lane += L::kWidth) {
+      if (L::kWidth == 1 && blocks[i].count[lane] == 0) break;
+      solveLanes<L, kSprings>(blocks[i], rests[i], lane, bodies, constants, lanes);
+    }
+  }
+  return lanes.left();
+}
+
+template <class L>
+inline constexpr ContactPasses<typename L::Numbers> kPassesOf = {passOver<L, true>, passOver<L, false>};
+
+}  // namespace
+}  // namespace samestep
