@@ -176,7 +176,13 @@ void BBTree<S>::updatePairs() {
   dropChanged();
   findChanged(resting);
   sortFound();
+  // Nearly all pairs are new when a world is built: such room is not needed again.
+  const bool built = found_.size() > 4096 && pairs_.size() < found_.size() / 4;
   mergeFound();
+  if (built) {
+    found_ = {};
+    sorting_ = {};
+  }
   if (resting != nullptr) {
     for (const IndexKey key : resting->changed_) changes_[key] = 0;
     resting->clearChanged();

@@ -237,6 +237,8 @@ void Space<S>::mergeNewPairs() {
       --fresh;
     }
   }
+  // As when a world is built.
+  if (impl.newPairs.size() > 4096 && impl.newPairs.size() == count) impl.newPairs = {};
 }
 
 template <Scalar S>

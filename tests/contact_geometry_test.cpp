@@ -209,6 +209,22 @@ TYPED_TEST(ContactGeometryTest, ACallbacksPointsAreForOneStep) {
   EXPECT_NEAR(double(this->anchors()[0].x - before[0].x), 0, 1e-3);
 }
 
+// At a centimetre per second, a sixth of a millimetre per step: a point fixed to the disc would lag behind
+// it.
+TYPED_TEST(ContactGeometryTest, ARollingDiscIsNotDrivenOn) {
+  using S = TypeParam;
+  Space<S> space;
+  space.setSolver(SolverKind::softStep);
+  space.setGravity({S(0), S(-10)});
+  const S speed = ratio<S>(1, 100), half = ratio<S>(1, 2);
+  space.add(boxShape<S>(space.staticBody(), BB<S>(S(-20), S(-1), S(20), S(0))));
+  const ShapeId disc = addDisc<S>(space, {S(0), half}, half, S(1), {speed, S(0)});
+  Body<S>& body = space.body(bodyOf(space, disc));
+  body.setAngularVelocity(-speed / half);
+  for (int i = 0; i < 600; ++i) space.step(kTick<S>);
+  EXPECT_NEAR(double(body.velocity().x), double(speed), 1e-4);
+}
+
 TYPED_TEST(ContactGeometryTest, ASeparationIsExactWhereAContactIsKept) {
   using S = TypeParam;
   const auto depth = [&] {
