@@ -50,6 +50,18 @@ const char* flawOf(const Contact<S>& contact) {
   return good ? nullptr : "a contact is out of range";
 }
 
+/// Of normal and points that the next step may solve without colliding the shapes again.
+template <Scalar S>
+const char* flawOfKept(const Pair<S>& pair) {
+  const S far = S(2 * kMaxExtent), slack = ratio<S>(1, 64);
+  const S unit = lengthSq(pair.localNormal);
+  bool good = pair.count > 0 && unit >= S(1) - slack && unit <= S(1) + slack;
+  for (const Contact<S>& contact : pair.contacts) {
+    good = good && within(contact.anchorA, far) && within(contact.anchorB, far);
+  }
+  return good ? nullptr : "a contact that is kept is out of range";
+}
+
 template <Scalar S>
 const char* flawOf(const WorldState<S>& world, const Pair<S>& pair) {
   const Shape<S>* a = world.shapes.find(pair.a);
@@ -64,7 +76,7 @@ const char* flawOf(const WorldState<S>& world, const Pair<S>& pair) {
   for (const Contact<S>& contact : pair.contacts) {
     if (const char* flaw = flawOf(contact)) return flaw;
   }
-  return nullptr;
+  return pair.manifold == Manifold::touching ? flawOfKept(pair) : nullptr;
 }
 
 const char* flawOf(const HandlerBinding& binding) {
