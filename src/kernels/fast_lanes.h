@@ -55,7 +55,7 @@ class FastLanes {
     return longProduct<Numbers::kFrictionBits>(friction, sum);
   }
   [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>& constants) {
-    return within(separation, all(-std::int64_t{constants.mostGap}), all(constants.mostGap));
+    return within(separation, all(1 - Numbers::kRange), all(constants.mostGap));
   }
   [[gnu::always_inline]] static V rate(V way, std::int32_t rate) { return FastLanes::rate(way, all(rate)); }
   [[gnu::always_inline]] static V rate(V way, V rate) {
