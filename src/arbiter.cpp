@@ -82,7 +82,7 @@ void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
     contact.anchorA = bodies_[0]->toLocal(swapped_ ? set.points[i].pointB : set.points[i].pointA);
     contact.anchorB = bodies_[1]->toLocal(swapped_ ? set.points[i].pointA : set.points[i].pointB);
   }
-  pair_.reusable = 0;
+  pair_.manifold = Manifold::unknown;
 }
 
 namespace {

@@ -49,15 +49,32 @@ template <Scalar S>
 void clip(const SupportEdge<S>& e1, S radius1, const SupportEdge<S>& e2, S radius2, const Vector<S>& n,
           S margin, CollisionInfo<S>& info) {
   const S whole1 = cross(e1.b - e1.a, n), whole2 = cross(e2.b - e2.a, n), starts = cross(e2.a - e1.a, n);
+  const bool back1 = whole1 < S(0);
+  const bool rounded = radius1 != S(0) || radius2 != S(0);
   info.normal = n;
-  const auto meet = [&](S part1, S part2, int index1, int index2) {
-    const Vector<S> p1 = pointAlong(e1, part1, whole1) + n * radius1;
-    const Vector<S> p2 = pointAlong(e2, part2, whole2) - n * radius2;
+  // Where edges meet, one ends first: its end, and the place on the other that faces it. Which one that is,
+  // is as good as random, so it chooses places in arrays rather than a way to go.
+  const auto meet = [&](S part1, S part2, const Vector<S>& end1, const Vector<S>& end2, bool inside1,
+                        int index1, int index2) {
+    const SupportEdge<S>* const edges[] = {&e2, &e1};
+    const S parts[] = {part2, part1}, wholes[] = {whole2, whole1};
+    const Vector<S>* const ends[] = {&end1, &end2};
+    const std::size_t on = inside1 ? 1 : 0;
+    Vector<S> points[2];
+    points[on] = pointAlong(*edges[on], parts[on], wholes[on]);
+    points[1 - on] = *ends[on];
+    Vector<S> p1 = points[1], p2 = points[0];
+    if (rounded) {
+      p1 += n * radius1;
+      p2 -= n * radius2;
+    }
     if (dot(p2 - p1, n) > margin) return;
     info.push(p1, p2, static_cast<std::uint32_t>(index1) << 16 | static_cast<std::uint32_t>(index2));
   };
-  meet(cross(e2.b - e1.a, n), -starts, e1.indexA, e2.indexB);
-  meet(starts, cross(e1.b - e2.a, n), e1.indexB, e2.indexA);
+  // Whether the end of the second lies beyond that of the first, seen along the first edge.
+  const S last = cross(e2.b - e1.a, n), first = cross(e2.a - e1.b, n);
+  meet(last, -starts, e1.a, e2.b, back1 ? last < S(0) : last > S(0), e1.indexA, e2.indexB);
+  meet(starts, -first, e1.b, e2.a, back1 ? first > S(0) : first < S(0), e1.indexB, e2.indexA);
 }
 
 }  // namespace samestep

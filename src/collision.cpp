@@ -107,9 +107,6 @@ void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId 
        b.radius, n, margin, info);
 }
 
-/// Up to here, looking at every vertex for every face is faster than searching.
-constexpr int kMaxFacePairs = 64;
-
 /// Segments and polygons, but for two segments, which have no face towards each other's ends.
 template <Scalar S>
 void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, CollisionInfo<S>& info,

@@ -44,21 +44,25 @@ template <Scalar S>
   return {armA, armB, dot((b.worldCenter() - a.worldCenter()) + (armB - armA), normal)};
 }
 
-// Recycling. While B stands to A as it did when they were collided, to within kSteady units of 2^-14 m and
-// rad (half a millimetre and half a thousandth, a tenth of the usual slop), normal and points are taken to be
-// fixed to the bodies. Separations are exact all the same, for they come from where the points are now; what
-// is off is the place of a point on the surface, by as much as the bodies moved, and the direction of a
-// normal that belongs to B, by as much as they turned. The pose compared with is that of the last true
-// collision, so nothing adds up.
+// Recycling, an idea of Box2D's contact recycling by E. Catto: while two bodies stand to each other as they
+// did when they were collided, normal and points are taken to be fixed to them, and shapes that were apart to
+// be apart. Separations are exact all the same, for they come from where the points are now; what is off is
+// the place of a point on the surface, by as much as the bodies moved, and the direction of a normal that
+// belongs to B, by as much as they turned. The pose compared with is that of the last true collision, so
+// nothing adds up.
 
-inline constexpr int kPoseBits = 14;
-inline constexpr int kSteady = 8;
+/// Units of a relative pose per metre, and per 1 of cosine and sine.
+inline constexpr int kPoseUnits = 1 << 14;
+/// How many units no point of a shape may have moved: a millimetre, a fifth of the usual slop and a
+/// twentieth of the usual margin.
+inline constexpr int kSteadyUnits = 16;
 
-/// @pre the origins are less than 2^16 m apart along each of A's axes, as those of shapes that meet are
+/// How `b` stands to `a`.
+/// @pre the origins are less than 2^16 m apart along each axis, as those of shapes that meet are
 template <Scalar S>
 [[gnu::always_inline]] inline RelativePose relativePose(const Frame<S>& a, const Frame<S>& b) {
   // Toward zero: the mirror image stands in the mirror image of the place.
-  const auto units = [](S x) { return static_cast<std::int32_t>(x * S(1 << kPoseBits)); };
+  const auto units = [](S x) { return static_cast<std::int32_t>(x * S(kPoseUnits)); };
   const Vector<S> place = a.toLocal(b.origin);
   const Vector<S> turn = unrotate(b.rotation, a.rotation);
   return {units(place.x), units(place.y),
@@ -66,13 +70,17 @@ template <Scalar S>
               (static_cast<std::uint32_t>(units(turn.y)) & 0xffffu)};
 }
 
-[[gnu::always_inline]] inline bool steady(const RelativePose& now, const RelativePose& then) {
-  const auto close = [](std::int64_t x, std::int64_t y) { return x - y <= kSteady && y - x <= kSteady; };
+/// Whether no point within `reach` metres of b's origin has moved by more than kSteadyUnits.
+[[gnu::always_inline]] inline bool steady(const RelativePose& now, const RelativePose& then,
+                                          std::int32_t reach) {
+  const auto apart = [](std::int64_t x, std::int64_t y) { return max(x - y, y - x); };
   const auto half = [](std::uint32_t bits) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(bits));
   };
-  return close(now.x, then.x) && close(now.y, then.y) && close(half(now.turn >> 16), half(then.turn >> 16)) &&
-         close(half(now.turn), half(then.turn));
+  const std::int64_t moved = max(apart(now.x, then.x), apart(now.y, then.y));
+  const std::int64_t turned =
+      max(apart(half(now.turn >> 16), half(then.turn >> 16)), apart(half(now.turn), half(then.turn)));
+  return moved + reach * turned <= kSteadyUnits;
 }
 
 }  // namespace samestep

@@ -98,7 +98,7 @@ void Space<S>::setSettings(const Settings<S>& settings) {
       settings.solver != state_.settings.solver || settings.contactMargin != state_.settings.contactMargin;
   state_.settings = settings;
   if (!otherContacts) return;
-  for (Pair<S>& pair : state_.pairs) pair.reusable = 0;
+  for (Pair<S>& pair : state_.pairs) pair.manifold = Manifold::unknown;
 }
 
 template <Scalar S>
@@ -419,6 +419,7 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
     checkShape(next, holder);
     ensureCache();
     if (holder.isDynamic() && !sameMass) holder.setMassProperties(massOfShapes(kept.body(), id, &next));
+    impl_->touch(kept.body().index);
   }
 
   impl_->shapesHashKnown = false;
@@ -430,7 +431,6 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
     forgetManifolds(id);
     impl_->prepareShape(id.index, kept);
     impl_->poses[kept.body().index].known = false;
-    impl_->touch(kept.body().index);
   }
 }
 
@@ -439,7 +439,7 @@ template <Scalar S>
 void Space<S>::forgetManifolds(ShapeId id) {
   for (const std::uint32_t index : threadOf(state_.shapes.valueAt(id.index).body())) {
     Pair<S>& pair = state_.pairs[index];
-    if (pair.a == id || pair.b == id) pair.reusable = 0;
+    if (pair.a == id || pair.b == id) pair.manifold = Manifold::unknown;
   }
 }
 

@@ -56,7 +56,8 @@ const char* flawOf(const WorldState<S>& world, const Pair<S>& pair) {
   const Shape<S>* b = world.shapes.find(pair.b);
   if (a == nullptr || b == nullptr) return "a pair names a shape that does not exist";
   if (a->body() == b->body()) return "a pair is of one body";
-  if (pair.count > kMaxContactsPerPair || pair.state > ArbiterState::cached || pair.reusable > 1) {
+  if (pair.count > kMaxContactsPerPair || pair.state > ArbiterState::cached ||
+      pair.manifold > Manifold::apart) {
     return "a pair is malformed";
   }
   if (!within(pair.localNormal, ratio<S>(1026, 1024))) return "a pair is out of range";

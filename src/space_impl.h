@@ -33,12 +33,14 @@ struct ShapeTraits {
   Surface<S> surface{};
   std::uint32_t body = 0;
   ShapeFilter filter{};
+  std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
   bool sensor = false;
   bool round = false;  ///< A circle.
 
   static ShapeTraits of(const Shape<S>& shape) {
-    return {Surface<S>::of(shape), shape.body().index, shape.filter(), shape.sensor(),
-            shape.type() == ShapeType::circle};
+    return {Surface<S>::of(shape), shape.body().index,
+            shape.filter(),        static_cast<std::int32_t>(shape.extent()) + 1,
+            shape.sensor(),        shape.type() == ShapeType::circle};
   }
 };
 
@@ -87,6 +89,8 @@ struct Space<S>::Impl {
   std::vector<std::uint32_t> planeOffset;
   std::vector<Plane<S>> planes;
   bool keepPlaced = false;
+  // Whether a step left midway: it may have moved bodies without placing them.
+  bool leftMidway = false;
   // Bodies that may have been moved by hand since the last step, each once.
   std::vector<std::uint32_t> touched;
   std::vector<std::uint8_t> isTouched;

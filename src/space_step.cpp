@@ -36,10 +36,16 @@ void Space<S>::step(S dt) {
   impl_->held.assign(state_.bodies.slots(), 0);
   {
     LockGuard guard(*this);
-    // What position functions ask about is the world before any of them moved a body.
-    if (!impl_->positionFuncs.empty()) refreshTouched();
+    // What position functions ask about is the world before any of them moved a body; the soft step begins
+    // with it: nothing but what was moved by hand has to be placed.
+    const bool soft = state_.settings.solver == SolverKind::softStep;
+    if (impl_->leftMidway) {
+      state_.bodies.each([this](BodyId id, const Body<S>&) { impl_->touch(id.index); });
+    }
+    impl_->leftMidway = true;
+    if (soft || !impl_->positionFuncs.empty()) refreshTouched();
     typename Impl::KeepPlaced keep(*impl_);
-    if (state_.settings.solver == SolverKind::sequentialImpulses) {
+    if (!soft) {
       integratePositions(dt);
       updateShapes();
       findPairs();
@@ -49,7 +55,8 @@ void Space<S>::step(S dt) {
       integrateVelocities(dt);
       solve(before == S(0) ? S(0) : stepRatio(dt, before));
     } else {
-      updateShapes();
+      impl_->forgetTouched();
+      endStage(Stage::updateShapes);
       findPairs();
       collidePairs();
       expirePairs();
@@ -61,6 +68,7 @@ void Space<S>::step(S dt) {
     postSolve();
     listRangeEvents();
     keep.end();
+    impl_->leftMidway = false;
     guard.finish();
   }
 }
@@ -254,16 +262,24 @@ void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown) {
   const bool sensor = shapeA.sensor || shapeB.sensor;
   const bool recycles = state_.settings.solver == SolverKind::softStep && !sensor;
   RelativePose pose;
-  if (recycles) pose = relativePose(bodyA.frame, bodyB.frame);
-  const bool same = recycles && pair.reusable != 0 && pair.age == 1 && steady(pose, pair.pose);
+  bool same = false;
+  if (recycles) {
+    // Seen from the larger shape, for a small turn of its body moves its ends far.
+    const bool byA = shapeA.reach >= shapeB.reach;
+    pose = byA ? relativePose(bodyA.frame, bodyB.frame) : relativePose(bodyB.frame, bodyA.frame);
+    if (pair.manifold != Manifold::unknown && steady(pose, pair.pose, min(shapeA.reach, shapeB.reach))) {
+      if (pair.manifold == Manifold::apart) return;
+      same = pair.age == 1;
+    }
+  }
   if (!same) {
     const CollisionInfo<S> info = collide(impl.placed[pair.a.index], impl.placed[pair.b.index],
                                           pair.collisionId, &collisionStats_, sensor ? S(0) : pairMargin());
     pair.collisionId = info.id;
+    pair.pose = pose;
+    pair.manifold = !recycles ? Manifold::unknown : info.count == 0 ? Manifold::apart : Manifold::touching;
     if (info.count == 0) return;
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
-    pair.pose = pose;
-    pair.reusable = recycles ? 1 : 0;
   }
   pair.age = 0;
   if (!same || !surfacesKnown || shapeA.surface.velocity != shapeB.surface.velocity) {
@@ -318,9 +334,11 @@ void Space<S>::expirePairs() {
     }
     if (pair.age < collisionPersistence()) continue;
     if (impl.overlapping[i] != 0) {
-      const CollisionId id = pair.collisionId;
-      pair = newPair<S>(pair.a, pair.b);
-      pair.collisionId = id;
+      Pair<S> fresh = newPair<S>(pair.a, pair.b);
+      fresh.collisionId = pair.collisionId;
+      fresh.pose = pair.pose;
+      fresh.manifold = pair.manifold;
+      pair = fresh;
     } else {
       pair.state = ArbiterState::apart;
       pair.age = 0;

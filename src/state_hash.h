@@ -13,7 +13,7 @@ namespace samestep {
 /// Hashes records: XXH3-64 of their canonical bytes, the same value on every machine.
 class HashSink {
  public:
-  HashSink() { XXH3_64bits_reset(&state_); }
+  HashSink();
 
   template <class T>
   [[gnu::flatten]] void put(const T& record) {
@@ -26,10 +26,7 @@ class HashSink {
     write.put(record);
     used_ = static_cast<unsigned>(pointer.to - chunk_);
   }
-  std::uint64_t finish() {
-    flush();
-    return XXH3_64bits_digest(&state_);
-  }
+  std::uint64_t finish();
 
  private:
   struct Pointer {
@@ -42,10 +39,7 @@ class HashSink {
   };
   static constexpr unsigned kChunk = 8192;
 
-  void flush() {
-    XXH3_64bits_update(&state_, chunk_, used_);
-    used_ = 0;
-  }
+  void flush();
 
   XXH3_state_t state_;
   unsigned used_ = 0;

@@ -23,53 +23,105 @@ struct FaceAxis {
   static constexpr std::uint32_t kTag = 0x80000000u, kOnB = 0x100u, kFace = 0xffu;
 };
 
-/// How far a face is from the nearest vertex of another shape.
+/// Two numbers that say how far along: the plain one for shapes near each other, the exact one for all.
 template <Scalar S>
+struct LocalWay {
+  using Number = Local<S>;
+  struct Place {
+    Number x, y;
+  };
+  static Place place(const Vector<S>& difference) {
+    return {localPlace(difference.x), localPlace(difference.y)};
+  }
+  static Place unit(const Vector<S>& n) { return {localUnit(n.x), localUnit(n.y)}; }
+  static Number along(const Place& place, const Place& n) { return localDot(place.x, place.y, n.x, n.y); }
+  static Number length(S length) { return localLength(length); }
+};
+template <Scalar S>
+struct ExactWay {
+  using Number = Wide<S>;
+  using Place = Vector<S>;
+  static Place place(const Vector<S>& difference) { return difference; }
+  static Place unit(const Vector<S>& n) { return n; }
+  static Number along(const Place& place, const Place& n) { return exactDot(place, n); }
+  static Number length(S length) { return exactProduct(length, S(1)); }
+};
+
+/// How far a face is from the nearest vertex of another shape.
+template <class Way, Scalar S>
 FaceAxis<S> separationAt(const PlacedShape<S>& shape, int face, const PlacedShape<S>& other, bool onB) {
   const Plane<S>& plane = shape.planes[face];
-  Wide<S> least = exactDot(other.planes[0].v0 - plane.v0, plane.n);
+  const auto n = Way::unit(plane.n);
+  const auto along = [&](int i) { return Way::along(Way::place(other.planes[i].v0 - plane.v0), n); };
+  typename Way::Number least = along(0);
   int nearest = 0;
   for (int i = 1; i < other.count; ++i) {
-    const Wide<S> along = exactDot(other.planes[i].v0 - plane.v0, plane.n);
-    if (along < least) {
-      least = along;
+    const typename Way::Number next = along(i);
+    if (next < least) {
+      least = next;
       nearest = i;
     }
   }
-  return {toScalar(least), face, nearest, onB};
+  return {toScalar(exactDot(other.planes[nearest].v0 - plane.v0, plane.n)), face, nearest, onB};
 }
 
-/// Searches all faces until one separates the shapes by more than `reach`.
-/// @param start  the id of an earlier answer: that face is looked at first
-template <Scalar S>
-FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, std::uint32_t start) {
+/// The face of a shape that is farthest from the nearest vertex of another, of equals the first.
+template <class Way>
+struct FarthestFace {
+  typename Way::Number separation{};
+  int face = 0;
+
+  template <class Place, class S>
+  FarthestFace(const PlacedShape<S>& shape, const Place* own, const Place* others, int otherCount) {
+    for (int i = 0; i < shape.count; ++i) {
+      const auto n = Way::unit(shape.planes[i].n);
+      // Without branches: which vertex it is, is seldom asked.
+      typename Way::Number least = Way::along(others[0], n);
+      for (int j = 1; j < otherCount; ++j) least = min(least, Way::along(others[j], n));
+      const typename Way::Number apart = least - Way::along(own[i], n);
+      if (i == 0 || apart > separation) {
+        separation = apart;
+        face = i;
+      }
+    }
+  }
+};
+
+/// Up to here, looking at every vertex for every face is faster than searching.
+inline constexpr int kMaxFacePairs = 64;
+
+template <class Way, Scalar S>
+FaceAxis<S> searchFaces(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, std::uint32_t start) {
   using Axis = FaceAxis<S>;
   if ((start & Axis::kTag) != 0) {
     const bool onB = (start & Axis::kOnB) != 0;
     const int face = static_cast<int>(start & Axis::kFace);
     if (face < (onB ? b : a).count) {
-      const Axis old = onB ? separationAt(b, face, a, true) : separationAt(a, face, b, false);
+      const Axis old = onB ? separationAt<Way>(b, face, a, true) : separationAt<Way>(a, face, b, false);
       if (old.separation > reach) return old;
     }
   }
 
-  Axis best = separationAt(a, 0, b, false);
-  for (int i = 1; i < a.count && best.separation <= reach; ++i) {
-    const Axis axis = separationAt(a, i, b, false);
-    if (axis.separation > best.separation) best = axis;
-  }
+  const Vector<S> origin = a.planes[0].v0;
+  typename Way::Place ofA[kMaxPolyVertices], ofB[kMaxPolyVertices];
+  for (int i = 0; i < a.count; ++i) ofA[i] = Way::place(a.planes[i].v0 - origin);
+  for (int i = 0; i < b.count; ++i) ofB[i] = Way::place(b.planes[i].v0 - origin);
+  const FarthestFace<Way> faceOfA(a, ofA, ofB, b.count), faceOfB(b, ofB, ofA, a.count);
   // Of two faces that lie flat on each other it is A's, whatever rounding makes of it: the answer stays the
   // same from step to step, and a segment is touched in its face, not at its end.
-  const S flat = S(0x1p-24);
-  S bound = best.separation + flat;
-  for (int i = 0; i < b.count && best.separation <= reach; ++i) {
-    const Axis axis = separationAt(b, i, a, true);
-    if (axis.separation > bound) {
-      best = axis;
-      bound = axis.separation;
-    }
-  }
-  return best;
+  const bool onB = faceOfB.separation > faceOfA.separation + Way::length(S(0x1p-20));
+  return onB ? separationAt<Way>(b, faceOfB.face, a, true) : separationAt<Way>(a, faceOfA.face, b, false);
+}
+
+/// The best of all faces, or the one looked at first if that one separates the shapes by more than `reach`.
+/// @param start  the id of an earlier answer: that face is looked at first
+/// @pre a.count * b.count <= kMaxFacePairs
+template <Scalar S>
+FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, std::uint32_t start) {
+  const BB<S> around = merge(a.box, b.box);
+  const S limit(kLocalReach);
+  const bool local = around.right - around.left < limit && around.top - around.bottom < limit;
+  return local ? searchFaces<LocalWay<S>>(a, b, reach, start) : searchFaces<ExactWay<S>>(a, b, reach, start);
 }
 
 /// Whether the nearest vertex lies above the inside of the face: then nothing of the shapes is nearer.

@@ -50,7 +50,7 @@ class ArbiterTest : public ::testing::Test {
     pair.contacts[0].anchorB = {S(1), S(1)};
     pair.contacts[1].anchorA = {S(2), S(-1)};
     pair.contacts[1].anchorB = {ratio<S>(3, 2), S(-1)};
-    pair.reusable = 1;
+    pair.manifold = Manifold::touching;
     return pair;
   }();
   Body<S> bodyA_{S(1), S(1)};
@@ -151,7 +151,7 @@ TYPED_TEST(ArbiterTest, ContactPointSetKeepsItsNumberOfPoints) {
   arbiter.setContactPointSet(set);
   EXPECT_EQ(arbiter.normal(), Vector<S>(S(0), S(1)));
   EXPECT_EQ(arbiter.pointA(0), Vector<S>(S(7), S(7)));
-  EXPECT_EQ(this->pair_.reusable, 0);
+  EXPECT_EQ(this->pair_.manifold, Manifold::unknown);
 }
 
 TYPED_TEST(ArbiterTest, NormalAndPointsFollowTheBodies) {

@@ -47,12 +47,12 @@ struct Contact {
   }
 };
 
-/// How B stood to A when a pair was collided: enough to tell whether it still stands so.
+/// How one body stood to another when their shapes were collided: enough to tell whether it still does.
 struct RelativePose {
-  /// B's origin in A's coordinates, in units of 2^-14 m toward zero.
+  /// Its origin in the other's coordinates, in units of 2^-14 m toward zero.
   std::int32_t x = 0;
   std::int32_t y = 0;
-  /// Cosine (high half) and sine of the angle from A to B, in the same units of 1.
+  /// Cosine (high half) and sine of its angle to the other, in units of 2^-14.
   std::uint32_t turn = 0;
 
   template <class Self, class Visitor>
@@ -61,6 +61,14 @@ struct RelativePose {
     visit("y", self.y);
     visit("turn", self.turn);
   }
+};
+
+/// What is known of a pair from the last time it was collided.
+enum class Manifold : std::uint8_t {
+  unknown = 0,  ///< Nothing that holds: to be collided in any case.
+  touching =
+      1,      ///< While the bodies stand as in `pose`: normal and points, if they touched in the last step.
+  apart = 2,  ///< While the bodies stand so: that they do not touch.
 };
 
 /// The state of a pair of shapes whose boxes overlap: the lower id is a. A new one stands apart.
@@ -77,7 +85,7 @@ struct Pair {
   S elasticity{};
   S friction{};
   Vector<S> surfaceVelocity{};
-  /// Where the bodies stood when normal and points were found.
+  /// How the body of the smaller shape stood to the other's when the shapes were collided.
   RelativePose pose{};
   /// Where the closest-feature search of the next step starts.
   CollisionId collisionId = 0;
@@ -85,8 +93,7 @@ struct Pair {
   std::uint32_t age = 0;
   std::uint8_t count = 0;
   ArbiterState state = ArbiterState::apart;
-  /// Whether normal and points may be used again while the bodies stand as in `pose`.
-  std::uint8_t reusable = 0;
+  Manifold manifold = Manifold::unknown;
   /// Whether this step solves it: touching, wanted by its callbacks, no sensor. No state.
   std::uint8_t solved = 0;
 
@@ -102,7 +109,7 @@ struct Pair {
     visit("age", self.age);
     visit("count", self.count);
     visit("state", self.state);
-    visit("reusable", self.reusable);
+    visit("manifold", self.manifold);
   }
 };
 

@@ -6,6 +6,7 @@
 
 #include "samestep/fixed.h"
 #include "samestep/fixed_math.h"
+#include "samestep/local.h"
 #include "samestep/scalar_results.h"
 #include "samestep/scaled.h"
 #include "samestep/wide.h"
@@ -134,6 +135,14 @@ double pow(double base, double exponent);
 /// a * b - c * d, for decisions. Exact on Fixed; plain on double.
 [[gnu::always_inline]] constexpr double exactCross(double a, double b, double c, double d) {
   return a * b - c * d;
+}
+
+/// As localPlace, localUnit, localLength and localDot on Fixed: on double, the number itself, and plain.
+[[gnu::always_inline]] constexpr double localPlace(double difference) { return difference; }
+[[gnu::always_inline]] constexpr double localUnit(double component) { return component; }
+[[gnu::always_inline]] constexpr double localLength(double length) { return length; }
+[[gnu::always_inline]] constexpr double localDot(double x, double y, double nx, double ny) {
+  return x * nx + y * ny;
 }
 
 /// -1, 0 or 1.

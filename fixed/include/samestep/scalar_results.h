@@ -28,6 +28,16 @@ struct WideOf<double> {
   using type = double;
 };
 
+/// Names the number that places near each other are compared by; see local.h.
+template <class S>
+struct LocalOf;
+
+/// A double is as good there as anywhere.
+template <>
+struct LocalOf<double> {
+  using type = double;
+};
+
 /// Names the number of huge range that goes with S; see Scaled in scaled.h.
 template <class S>
 struct ScaledOf;
@@ -41,6 +51,10 @@ struct ScaledOf<double> {
 /// Sums of two exact products of S, for decisions that no rounding may sway.
 template <class S>
 using Wide = typename WideOf<S>::type;
+
+/// Places of a neighbourhood, and sums of two products of them with unit vectors.
+template <class S>
+using Local = typename LocalOf<S>::type;
 
 /// S with a range that masses, moments and their inverses cannot leave.
 template <class S>
