@@ -40,19 +40,26 @@ void takeSurfaces(Pair<S>& pair, const Surface<S>& a, const Surface<S>& b, const
 template <Scalar S>
 void pushContacts(Pair<S>& pair, const CollisionInfo<S>& info, const Frame<S>& a, const Frame<S>& b) {
   require<Fault::BufferOverflow>(info.count >= 0 && info.count <= kMaxContactsPerPair);
-  Contact<S> contacts[kMaxContactsPerPair];
+  struct {
+    S normalSpeed, tangentSpeed;
+    std::uint32_t feature;
+  } before[kMaxContactsPerPair];
+  for (int i = 0; i < kMaxContactsPerPair; ++i) {
+    before[i] = {pair.contacts[i].normalSpeed, pair.contacts[i].tangentSpeed, pair.contacts[i].feature};
+  }
   for (int i = 0; i < info.count; ++i) {
-    Contact<S>& contact = contacts[i];
+    Contact<S>& contact = pair.contacts[i];
     contact.anchorA = a.toLocal(info.points[i].pointA);
     contact.anchorB = b.toLocal(info.points[i].pointB);
+    contact.normalSpeed = contact.tangentSpeed = contact.normalTotal = contact.tangentTotal = S(0);
     contact.feature = info.points[i].hash;
     for (int j = 0; j < pair.count; ++j) {
-      if (pair.contacts[j].feature != contact.feature) continue;
-      contact.normalSpeed = pair.contacts[j].normalSpeed;
-      contact.tangentSpeed = pair.contacts[j].tangentSpeed;
+      if (before[j].feature != contact.feature) continue;
+      contact.normalSpeed = before[j].normalSpeed;
+      contact.tangentSpeed = before[j].tangentSpeed;
     }
   }
-  for (int i = 0; i < kMaxContactsPerPair; ++i) pair.contacts[i] = contacts[i];
+  for (int i = info.count; i < kMaxContactsPerPair; ++i) pair.contacts[i] = {};
   pair.localNormal = unrotate(info.normal, a.rotation);
   pair.count = static_cast<std::uint8_t>(info.count);
 }

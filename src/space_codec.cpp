@@ -108,8 +108,10 @@ class WorldReader {
       return body.wellFormed() ? nullptr : "a body is malformed";
     });
     if (const char* flaw = flawOfFrame(world_)) failFormat(start, flaw);
-    slots(world_.shapes, limits_.shapes, "more shapes than allowed",
-          [this](ShapeId id, Shape<S>& shape) { return flawOf(world_, id, shape); });
+    slots(world_.shapes, limits_.shapes, "more shapes than allowed", [this](ShapeId id, Shape<S>& shape) {
+      shape.attach(id, 0);
+      return flawOf(world_, id, shape);
+    });
     list(world_.pairs, limits_.pairs, "more pairs than allowed", [this](Pair<S>& pair) {
       const auto exists = [&](ShapeId id) {
         return id.index < world_.shapes.slots() && world_.shapes.aliveAt(id.index);

@@ -35,12 +35,14 @@ struct ShapeTraits {
   ShapeFilter filter{};
   std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
   bool sensor = false;
-  bool round = false;  ///< A circle.
+  bool round = false;    ///< A circle.
+  bool rounded = false;  ///< Has a radius: its surface may roll.
 
   static ShapeTraits of(const Shape<S>& shape) {
     return {Surface<S>::of(shape), shape.body().index,
             shape.filter(),        static_cast<std::int32_t>(shape.extent()) + 1,
-            shape.sensor(),        shape.type() == ShapeType::circle};
+            shape.sensor(),        shape.type() == ShapeType::circle,
+            shape.radius() != S(0)};
   }
 };
 

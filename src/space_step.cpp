@@ -185,9 +185,12 @@ void Space<S>::findPairs() {
     ++kept;
     impl.overlapping.push_back(overlap ? 1 : 0);
   };
-  // Its boxes came apart: only a contact that may come back is kept.
+  // Its boxes came apart: only a contact that may come back is kept, and one whose end is still to be told.
   const auto leave = [&] {
-    if (pairs[old].state == ArbiterState::apart) {
+    const Pair<S>& pair = pairs[old];
+    const bool forgotten =
+        pair.state == ArbiterState::cached && pair.age + 1 >= collisionPersistence() && !rests(pair);
+    if (pair.state == ArbiterState::apart || forgotten) {
       ++old;
     } else {
       keep(false);
@@ -260,7 +263,9 @@ void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown) {
   const ShapeTraits<S>&shapeA = impl.traits[pair.a.index], &shapeB = impl.traits[pair.b.index];
   const PlacedPose<S>&bodyA = impl.poses[shapeA.body], &bodyB = impl.poses[shapeB.body];
   const bool sensor = shapeA.sensor || shapeB.sensor;
-  const bool recycles = state_.settings.solver == SolverKind::softStep && !sensor;
+  // A circle is collided faster than remembered, and no margin goes round a sensor.
+  const bool recycles =
+      state_.settings.solver == SolverKind::softStep && !sensor && !shapeA.round && !shapeB.round;
   RelativePose pose;
   bool same = false;
   if (recycles) {
@@ -277,7 +282,11 @@ void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown) {
                                           pair.collisionId, &collisionStats_, sensor ? S(0) : pairMargin());
     pair.collisionId = info.id;
     pair.pose = pose;
-    pair.manifold = !recycles ? Manifold::unknown : info.count == 0 ? Manifold::apart : Manifold::touching;
+    // Where one point touches a rounded surface, that surface may roll: a point fixed to it would lag behind
+    // and drive it on.
+    const bool rolls = info.count == 1 && (shapeA.rounded || shapeB.rounded);
+    pair.manifold = Manifold::unknown;
+    if (recycles && !rolls) pair.manifold = info.count == 0 ? Manifold::apart : Manifold::touching;
     if (info.count == 0) return;
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
   }

@@ -59,9 +59,9 @@ TYPED_TEST(FieldsTest, FieldsAccountForEveryByte) {
   constexpr std::size_t kBelonging = sizeof(BodyId) + 4;  // Id and owner.
   constexpr std::size_t kWithinStep = 2;
   EXPECT_EQ(leavesOf(Body<S>()).bytes() + kDerived + kBelonging + kWithinStep, sizeof(Body<S>));
-  constexpr std::size_t kOwner = 8;
+  constexpr std::size_t kIdAndOwner = 16;
   constexpr std::size_t kShapeFiller = 5;
-  EXPECT_EQ(leavesOf(this->fullPolygon()).bytes() + kOwner + kShapeFiller, sizeof(Shape<S>));
+  EXPECT_EQ(leavesOf(this->fullPolygon()).bytes() + kIdAndOwner + kShapeFiller, sizeof(Shape<S>));
   constexpr std::size_t kTotals = 2 * sizeof(S), kContactFiller = 4;
   EXPECT_EQ(leavesOf(Contact<S>()).bytes() + kTotals + kContactFiller, sizeof(Contact<S>));
   constexpr std::size_t kGenerations = 8, kSurfaces = 2 * sizeof(S) + sizeof(Vector<S>), kSolved = 1;

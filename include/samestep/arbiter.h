@@ -75,16 +75,11 @@ enum class Manifold : std::uint8_t {
 /// MIS: arbiterInit
 template <Scalar S>
 struct Pair {
+  // First what every step asks of every pair: it shares a cache line.
+
   /// Of the state only the slots: a shape that goes takes its pairs with it.
   ShapeId a{};
   ShapeId b{};
-  /// From a to b, a unit vector in the coordinates of a's body.
-  Vector<S> localNormal{};
-  Contact<S> contacts[kMaxContactsPerPair]{};
-  /// For this step, from the shapes or from Arbiter's setters. No state.
-  S elasticity{};
-  S friction{};
-  Vector<S> surfaceVelocity{};
   /// How the body of the smaller shape stood to the other's when the shapes were collided.
   RelativePose pose{};
   /// Where the closest-feature search of the next step starts.
@@ -96,6 +91,13 @@ struct Pair {
   Manifold manifold = Manifold::unknown;
   /// Whether this step solves it: touching, wanted by its callbacks, no sensor. No state.
   std::uint8_t solved = 0;
+  /// From a to b, a unit vector in the coordinates of a's body.
+  Vector<S> localNormal{};
+  Contact<S> contacts[kMaxContactsPerPair]{};
+  /// For this step, from the shapes or from Arbiter's setters. No state.
+  S elasticity{};
+  S friction{};
+  Vector<S> surfaceVelocity{};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {

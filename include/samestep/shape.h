@@ -162,14 +162,13 @@ class Shape {
 
   /// Visits every field that is state, in order, as visit(name, field). `Self` is Shape or const Shape. Past
   /// the count the vertices are zero: a reader starts from a new Shape. The owner is no state: it names a
-  /// Space of this process.
+  /// Space of this process; nor is the id, which says in which slot of the state the shape is.
   template <class Self, class Visit>
   static constexpr void fields(Self& self, Visit&& visit) {
     visit("type", self.type_);
     visit("sensor", self.sensor_);
     visit("count", self.count_);
     visit("body", self.body_);
-    visit("id", self.id_);
     visit("userData", self.userData_);
     visit("collisionType", self.collisionType_);
     visit("group", self.filter_.group);
