@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWidth = 860;
 constexpr int kHeight = 520;
-constexpr int kLeft = 76;
+constexpr int kLeft = 88;
 constexpr int kRight = 630;
 constexpr int kTop = 84;
 constexpr int kBottom = 464;

@@ -15,6 +15,8 @@ namespace samestep {
 struct SweepOptions {
   std::uint64_t steps = 0;  ///< 0: as the exact answer says, else 330 or what the scene lasts.
   int rounds = 3;           ///< In which all settings take turns; at least 1.
+  /// A run is repeated until the steps timed in it took so long, s.
+  double leastSeconds = 0.02;
   /// Is told in words what has been done, and of how much: runs.
   std::function<void(int done, int total, const std::string& what)> progress;
 };
