@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   addDiff(app, result);
   addDraw(app, result);
   addChart(app, result);
+  addEnvelope(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -8,14 +8,17 @@ namespace {
 
 constexpr int kIterations[] = {2, 4, 8, 16, 32, 64};
 constexpr int kSubsteps[] = {1, 2, 4, 8, 16};
+constexpr int kLimitIterations[] = {10, 40};
+constexpr int kLimitSubsteps[] = {4, 16};
 
 constexpr Method kMethods[] = {
 #ifndef SAMESTEP_FIXED_ONLY
-    {"double impulses", "double", SolverKind::sequentialImpulses, "iterations", kIterations},
-    {"double soft step", "double", SolverKind::softStep, "substeps", kSubsteps},
+    {"double impulses", "double", SolverKind::sequentialImpulses, "iterations", kIterations,
+     kLimitIterations},
+    {"double soft step", "double", SolverKind::softStep, "substeps", kSubsteps, kLimitSubsteps},
 #endif
-    {"fixed impulses", "fixed", SolverKind::sequentialImpulses, "iterations", kIterations},
-    {"fixed soft step", "fixed", SolverKind::softStep, "substeps", kSubsteps},
+    {"fixed impulses", "fixed", SolverKind::sequentialImpulses, "iterations", kIterations, kLimitIterations},
+    {"fixed soft step", "fixed", SolverKind::softStep, "substeps", kSubsteps, kLimitSubsteps},
 };
 
 }  // namespace

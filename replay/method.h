@@ -17,6 +17,7 @@ struct Method {
   SolverKind solver;
   const char* unit;             ///< What its count counts: "iterations" or "substeps".
   std::span<const int> counts;  ///< What a chart sweeps.
+  std::span<const int> limits;  ///< Whose limits are looked for: usual, and thorough.
 };
 
 /// All methods of this build. A new one is a row of the table behind it.
