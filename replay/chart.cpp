@@ -52,12 +52,14 @@ std::vector<FrontPoint> frontOf(const Chart& chart) {
 
 std::string chartCsv(const Chart& chart) {
   std::string out =
-      "scene,method,scalar,unit,count,ms_per_step,ms_fastest,ms_slowest,error_m,error_kind,on_front\n";
+      "scene,method,scalar,unit,count,ms_per_step,ms_fastest,ms_slowest,error_m,overlap_m,drift_m,error_kind,"
+      "on_front\n";
   for (const ChartLine& line : chart.lines) {
     for (const ChartPoint& point : line.points) {
-      char numbers[160];
-      std::snprintf(numbers, sizeof numbers, "%d,%.6g,%.6g,%.6g,%.6g", point.count, point.milliseconds,
-                    point.fastest, point.slowest, point.error);
+      char numbers[200];
+      std::snprintf(numbers, sizeof numbers, "%d,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g", point.count,
+                    point.milliseconds, point.fastest, point.slowest, point.error, point.overlap,
+                    point.drift);
       out += quoted(chart.scene) + "," + line.method + "," + line.scalar + "," + line.unit + "," + numbers +
              "," + chart.kind + "," + (point.onFront ? "yes" : "no") + "\n";
     }

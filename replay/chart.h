@@ -12,7 +12,9 @@ struct ChartPoint {
   double milliseconds = 0;  ///< Per step, the median of the rounds.
   double fastest = 0;       ///< Of the rounds, ms per step.
   double slowest = 0;
-  double error = 0;      ///< m; what it is of, Chart::measure says.
+  double error = 0;    ///< m; what it is of, Chart::measure says.
+  double overlap = 0;  ///< Of kinds rest and overlap, what error is the sum of, m.
+  double drift = 0;
   bool onFront = false;  ///< No faster one is as accurate, to 1 %.
 };
 

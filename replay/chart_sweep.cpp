@@ -85,15 +85,15 @@ class Yardstick {
 
   void describe(Chart& chart) const;
   std::uint64_t steps() const { return steps_; }
-  double errorOf(const Method& method, int count) const {
-    return withScalarOf(method, [&](auto scalar) { return errorOf<decltype(scalar)>(method, count); });
+  void measure(const Method& method, ChartPoint& point) const {
+    withScalarOf(method, [&](auto scalar) { measure<decltype(scalar)>(method, point); });
   }
 
  private:
   enum class Kind { exact, reference, rest, overlap };
 
   template <Scalar S>
-  double errorOf(const Method& method, int count) const;
+  void measure(const Method& method, ChartPoint& point) const;
   template <Scalar S>
   void useExact();
   template <Scalar S>
@@ -101,7 +101,7 @@ class Yardstick {
   template <Scalar S>
   Track trackOf(Scene<S>& scene, const Method& method, int count) const;
   template <Scalar S>
-  double errorAfter(Scene<S>& scene) const;
+  void measureAfter(Scene<S>& scene, ChartPoint& point) const;
 
   const SceneSource& source_;
   std::uint64_t steps_;
@@ -176,7 +176,7 @@ Track Yardstick::trackOf(Scene<S>& scene, const Method& method, int count) const
 
 /// In the second after the last step.
 template <Scalar S>
-double Yardstick::errorAfter(Scene<S>& scene) const {
+void Yardstick::measureAfter(Scene<S>& scene, ChartPoint& point) const {
   const Spots before = spotsOf(scene.space());
   const auto second = static_cast<std::uint64_t>(static_cast<int>(S(1) / scene.timeStep() + ratio<S>(1, 2)));
   double overlap = 0;
@@ -187,16 +187,20 @@ double Yardstick::errorAfter(Scene<S>& scene) const {
     overlap += deepestOverlap(scene.space());
     looks += 1;
   }
-  const double drift = kind_ == Kind::rest ? distanceBetween(before, spotsOf(scene.space())) : 0;
-  return overlap / looks + drift;
+  point.overlap = overlap / looks;
+  point.drift = kind_ == Kind::rest ? distanceBetween(before, spotsOf(scene.space())) : 0;
+  point.error = point.overlap + point.drift;
 }
 
 template <Scalar S>
-double Yardstick::errorOf(const Method& method, int count) const {
+void Yardstick::measure(const Method& method, ChartPoint& point) const {
   Scene<S> scene(source_);
-  const Track track = trackOf(scene, method, count);
-  const bool compared = kind_ == Kind::exact || kind_ == Kind::reference;
-  return compared ? distanceBetween(track, expected_) : errorAfter(scene);
+  const Track track = trackOf(scene, method, point.count);
+  if (kind_ == Kind::exact || kind_ == Kind::reference) {
+    point.error = distanceBetween(track, expected_);
+  } else {
+    measureAfter(scene, point);
+  }
 }
 
 void Yardstick::describe(Chart& chart) const {
@@ -278,9 +282,13 @@ Chart sweepScene(const SceneSource& source, const SweepOptions& options) {
       chart.lines.push_back({run.method->name, run.method->scalar, run.method->unit, {}});
     }
     last = run.method;
+    ChartPoint& point = chart.lines.back().points.emplace_back();
     const auto [fastest, slowest] = std::minmax_element(run.milliseconds.begin(), run.milliseconds.end());
-    chart.lines.back().points.push_back({run.count, median(run.milliseconds), *fastest, *slowest,
-                                         yardstick.errorOf(*run.method, run.count), false});
+    point.count = run.count;
+    point.milliseconds = median(run.milliseconds);
+    point.fastest = *fastest;
+    point.slowest = *slowest;
+    yardstick.measure(*run.method, point);
     ++done;
   }
   markFront(chart);
