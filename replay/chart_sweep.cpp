@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 
 #include <samestep/collision.h>
@@ -12,6 +13,7 @@
 #include "chart_track.h"
 #include "method.h"
 #include "require_ieee.h"
+#include "scene_document.h"
 
 namespace samestep {
 namespace {
@@ -37,6 +39,17 @@ double median(std::vector<double> values) {
   std::stable_sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+/// Whether it is one of the project's own scenes: a user's may have the name of one.
+bool isOurs(const SceneSource& source) {
+  const SceneSource::Document& document = source.document();
+  if (!document.family.empty()) return true;
+  for (const std::string& folder : sceneFolders()) {
+    std::error_code error;
+    if (std::filesystem::equivalent(folder, document.folder, error)) return true;
+  }
+  return false;
 }
 
 std::string meters(double value) {
@@ -113,7 +126,9 @@ class Yardstick {
 };
 
 Yardstick::Yardstick(const SceneSource& source, std::uint64_t steps)
-    : source_(source), steps_(steps), exact_(exactAnswerOf(source.summary().name)) {
+    : source_(source),
+      steps_(steps),
+      exact_(isOurs(source) ? exactAnswerOf(source.summary().name) : nullptr) {
   // The first soft step of the table: of double where this build has it.
   const Method* finest = &methods().front();
   for (const Method& method : methods()) {
@@ -124,7 +139,7 @@ Yardstick::Yardstick(const SceneSource& source, std::uint64_t steps)
   }
   if (exact_ != nullptr && steps_ > exact_->most) {
     throw std::runtime_error("the exact answer of " + source.summary().name + " holds for " +
-                             std::to_string(exact_->most) + " steps at the most");
+                             std::to_string(exact_->most) + " ticks at the most");
   }
   withScalarOf(*finest, [&](auto scalar) {
     if (exact_ != nullptr) {

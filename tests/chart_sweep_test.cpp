@@ -64,6 +64,14 @@ TEST(ChartSweepTest, AnExactAnswerIsWhatErrorsAreMeasuredBy) {
   EXPECT_THAT(chart.measure[0], HasSubstr("exact answer"));
 }
 
+TEST(ChartSweepTest, AUsersSceneOfTheSameNameHasNoExactAnswer) {
+  const SceneSource source = SceneSource::fromText(R"({"samestep": 1, "bodies": [
+      {"velocity": [1, 0], "shapes": [{"circle": 0.5, "density": 1}]}]})",
+                                                   "incline");
+
+  EXPECT_EQ(sweep(source, 12).kind, "reference");
+}
+
 TEST(ChartSweepTest, WithoutAnExactAnswerItIsARunThatConverged) {
   const Chart chart = sweep(fallingBall(), 60);
 
