@@ -30,7 +30,7 @@ void useMethod(Space<S>& space, const Method& method, int count);
 
 /// Calls visit(S()) for the scalar of the method.
 template <class Visit>
-auto withScalarOf(const Method& method, Visit&& visit) {
+auto withScalarOf([[maybe_unused]] const Method& method, Visit&& visit) {
 #ifndef SAMESTEP_FIXED_ONLY
   if (std::string_view(method.scalar) == "double") return visit(double());
 #endif
