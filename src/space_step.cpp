@@ -422,5 +422,6 @@ template class Space<double>;
 #endif
 template class Space<Fixed>;
 template class Space<CheckedFixed>;
+void file_of::spaceStep() {}
 
 }  // namespace samestep
