@@ -479,5 +479,6 @@ template class Space<double>;
 #endif
 template class Space<Fixed>;
 template class Space<CheckedFixed>;
+void file_of::spaceStep() {}
 
 }  // namespace samestep
