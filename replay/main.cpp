@@ -36,6 +36,8 @@ int main(int argc, char** argv) {
   addVerify(app, result);
   addDiff(app, result);
   addDraw(app, result);
+  addChart(app, result);
+  addEnvelope(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -63,6 +63,19 @@ void Progress::at(std::uint64_t done, std::uint64_t total) {
   std::fflush(stderr);
 }
 
+StatusLine::StatusLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void StatusLine::clear() {
+  if (shown_) std::fprintf(stderr, "\r\033[K");
+  shown_ = false;
+}
+
+void StatusLine::show(const std::string& text) {
+  std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", text.c_str());
+  std::fflush(stderr);
+  shown_ = terminal_;
+}
+
 std::vector<std::uint8_t> readFile(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream || std::filesystem::is_directory(path)) throw Unusable(path + ": cannot be read");
@@ -87,6 +100,13 @@ void writeFile(const std::string& path, std::span<const std::uint8_t> bytes) {
     std::remove(part.c_str());
     throw Unusable(path + ": cannot be written: " + error.message());
   }
+}
+
+void checkWritable(const std::string& path) {
+  const std::string part = path + ".part";
+  const bool writable = !std::filesystem::is_directory(path) && std::ofstream(part, std::ios::binary);
+  std::remove(part.c_str());
+  if (!writable) throw Unusable(path + ": cannot be written");
 }
 
 void writeFile(const std::string& path, const std::string& text) {

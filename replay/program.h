@@ -38,6 +38,8 @@ void addRecord(CLI::App& app, int& result);
 void addVerify(CLI::App& app, int& result);
 void addDiff(CLI::App& app, int& result);
 void addDraw(CLI::App& app, int& result);
+void addChart(CLI::App& app, int& result);
+void addEnvelope(CLI::App& app, int& result);
 
 /// Adds --scalar with the scalars of this build.
 void addScalarOption(CLI::App& app, std::string& scalar);
@@ -81,6 +83,23 @@ class Progress {
   bool shown_ = false;
 };
 
+/// Says on the error output what long work is at: on a terminal in a line that it keeps rewriting, else in a
+/// line each.
+class StatusLine {
+ public:
+  StatusLine();
+  ~StatusLine() { clear(); }
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+  void show(const std::string& text);
+  /// Takes it off the terminal.
+  void clear();
+
+ private:
+  bool terminal_;
+  bool shown_ = false;
+};
+
 /// Milliseconds since some point in the past.
 std::int64_t milliseconds();
 
@@ -90,6 +109,9 @@ std::vector<std::uint8_t> readFile(const std::string& path);
 /// @throws Unusable
 void writeFile(const std::string& path, std::span<const std::uint8_t> bytes);
 void writeFile(const std::string& path, const std::string& text);
+/// Before long work: whether writeFile will find the folder and may write there.
+/// @throws Unusable
+void checkWritable(const std::string& path);
 
 /// Says on the error output what is wrong with a file and, of malformed bytes, where.
 void tell(const std::string& file, const std::exception& error);

@@ -141,7 +141,7 @@ struct SoftConstants {
   typename N::Speed pushSpeed;
   /// The greatest accumulated u, m/s.
   typename N::Sum mostSum;
-  /// The greatest distance that a kernel of limited range tells apart, m.
+  /// The greatest gap that a kernel of limited range tells apart, m.
   typename N::Speed mostGap;
 };
 

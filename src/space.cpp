@@ -671,4 +671,10 @@ template class Space<double>;
 template class Space<Fixed>;
 template class Space<CheckedFixed>;
 
+namespace {
+[[gnu::used]] void (*const filesOfSpace[])() = {file_of::spaceCache, file_of::spaceHandlers,
+                                                file_of::spaceQuery, file_of::spaceSoftStep,
+                                                file_of::spaceStep};
+}  // namespace
+
 }  // namespace samestep

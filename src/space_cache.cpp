@@ -180,5 +180,6 @@ template class Space<double>;
 #endif
 template class Space<Fixed>;
 template class Space<CheckedFixed>;
+void file_of::spaceCache() {}
 
 }  // namespace samestep

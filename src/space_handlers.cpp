@@ -192,5 +192,6 @@ template class Space<double>;
 #endif
 template class Space<Fixed>;
 template class Space<CheckedFixed>;
+void file_of::spaceHandlers() {}
 
 }  // namespace samestep

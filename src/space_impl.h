@@ -176,4 +176,15 @@ struct Space<S>::Impl {
   void prepareShape(std::uint32_t index, const Shape<S>& shape);
 };
 
+/// One function of each further file that defines members of Space, for space.cpp to refer to. Under gcc's
+/// link-time optimisation what one of these files asks of another is a weak reference, since each
+/// instantiates the class; and a weak one alone takes no file out of a static library.
+namespace file_of {
+void spaceCache();
+void spaceHandlers();
+void spaceQuery();
+void spaceSoftStep();
+void spaceStep();
+}  // namespace file_of
+
 }  // namespace samestep

@@ -77,5 +77,6 @@ template class Space<double>;
 #endif
 template class Space<Fixed>;
 template class Space<CheckedFixed>;
+void file_of::spaceQuery() {}
 
 }  // namespace samestep

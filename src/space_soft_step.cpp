@@ -153,5 +153,6 @@ template class Space<double>;
 #endif
 template class Space<Fixed>;
 template class Space<CheckedFixed>;
+void file_of::spaceSoftStep() {}
 
 }  // namespace samestep

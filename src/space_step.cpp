@@ -481,5 +481,6 @@ template class Space<double>;
 #endif
 template class Space<Fixed>;
 template class Space<CheckedFixed>;
+void file_of::spaceStep() {}
 
 }  // namespace samestep

@@ -64,7 +64,7 @@ TEST_F(ProgramTest, TellsItsVersion) {
 
 TEST_F(ProgramTest, HelpExplainsEachWordAndSucceeds) {
   EXPECT_EQ(run("--help").code, 0);
-  for (const char* word : {"scenes", "hash", "record", "verify", "diff", "draw"}) {
+  for (const char* word : {"scenes", "hash", "record", "verify", "diff", "draw", "chart", "envelope"}) {
     EXPECT_THAT(run("--help").out, HasSubstr(word));
     EXPECT_EQ(run(std::string(word) + " --help").code, 0) << word;
   }
@@ -131,6 +131,29 @@ TEST_F(ProgramTest, RecordsVerifiesAndFindsWhatWasAltered) {
   const Outcome several = run("verify '" + file("cut.rec") + "' '" + file("a.rec") + "'");
   EXPECT_EQ(several.code, 2);
   EXPECT_THAT(several.out, HasSubstr("all 150 ticks"));
+}
+
+TEST_F(ProgramTest, ChartWritesAPictureAndACsvAndTellsTheFront) {
+  const Outcome outcome =
+      run("chart pyramid:2 --ticks 6 --rounds 1 -o '" + file("a.svg") + "' --csv '" + file("a.csv") + "'");
+
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("exact answer"));
+  EXPECT_THAT(outcome.out, HasSubstr("ms per step"));
+  EXPECT_THAT(outcome.error, HasSubstr("round 1 of 1"));
+  EXPECT_THAT(contents(file("a.svg")), HasSubstr("</svg>"));
+  EXPECT_THAT(contents(file("a.csv")), HasSubstr("\npyramid:2,fixed soft step,fixed,substeps,4,"));
+}
+
+TEST_F(ProgramTest, EnvelopeTellsTheLimitsOfALadderAndWhatFailingMeans) {
+  const Outcome outcome = run("envelope bullet-6cm --csv '" + file("a.csv") + "'");
+
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("\n| fixed soft step, 4 substeps | "));
+  EXPECT_THAT(outcome.out, HasSubstr("It fails when "));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("stack")));
+  EXPECT_THAT(outcome.error, HasSubstr("limits; bullet-6cm, fixed impulses, 10 iterations"));
+  EXPECT_THAT(contents(file("a.csv")), HasSubstr("\nbullet-6cm,fixed soft step,4,"));
 }
 
 TEST_F(ProgramTest, DiffNamesTickObjectFieldAndInput) {

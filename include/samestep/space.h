@@ -41,7 +41,7 @@ enum class ContactPrecision : std::uint8_t {
 /// What the MIS calls the state variables of a Space that a user sets, and those of the soft step.
 template <Scalar S>
 struct Settings {
-  SolverKind solver = SolverKind::sequentialImpulses;
+  SolverKind solver = SolverKind::softStep;
   ContactPrecision precision = ContactPrecision::accurate;
   std::uint8_t unused[2] = {};
   /// Sequential impulses: how often all contacts are solved in a step, 1 to 1000.

@@ -17,6 +17,8 @@ struct DoubleLanes {
   using M = typename Vectors::Masks;
   static constexpr int kWidth = sizeof(V) / sizeof(double);
 
+  /// Of the whole block, whatever the width: a point that does nothing still turns -0 into 0.
+  static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
   [[gnu::always_inline]] static V zero() { return V{}; }
   [[gnu::always_inline]] static V whole() { return all(1.0); }
   [[gnu::always_inline]] static V all(double x) { return x - V{}; }
@@ -24,6 +26,7 @@ struct DoubleLanes {
   [[gnu::always_inline]] static V load(const double* from) { return *reinterpret_cast<const V*>(from); }
   [[gnu::always_inline]] static void store(double* to, V v) { *reinterpret_cast<V*>(to) = v; }
   [[gnu::always_inline]] static V select(M mask, V a, V b) { return mask ? a : b; }
+  [[gnu::always_inline]] static auto above(V a, V b) { return a > b; }
   [[gnu::always_inline]] static V greater(V a, V b) { return select(a < b, b, a); }
   [[gnu::always_inline]] static V within(V x, V low, V high) {
     return select(x < low, low, select(high < x, high, x));

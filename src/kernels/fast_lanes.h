@@ -19,6 +19,7 @@ class FastLanes {
   using V = typename Vectors::V;
   static constexpr int kWidth = sizeof(V) / sizeof(std::int64_t);
 
+  static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
   [[gnu::always_inline]] static V zero() { return V{}; }
   [[gnu::always_inline]] static V whole() { return all(1 << Numbers::kUnitBits); }
   [[gnu::always_inline]] static V all(std::int64_t x) { return V{} + x; }
@@ -34,6 +35,7 @@ class FastLanes {
   [[gnu::always_inline]] static V select(Mask mask, V a, V b) {
     return mask ? a : b;
   }
+  [[gnu::always_inline]] static auto above(V a, V b) { return a > b; }
   [[gnu::always_inline]] static V greater(V a, V b) { return select(a < b, b, a); }
   [[gnu::always_inline]] static V within(V x, V low, V high) {
     return select(x < low, low, select(high < x, high, x));
@@ -55,7 +57,7 @@ class FastLanes {
     return longProduct<Numbers::kFrictionBits>(friction, sum);
   }
   [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>& constants) {
-    return within(separation, all(-std::int64_t{constants.mostGap}), all(constants.mostGap));
+    return within(separation, all(1 - Numbers::kRange), all(constants.mostGap));
   }
   [[gnu::always_inline]] static V rate(V way, std::int32_t rate) { return FastLanes::rate(way, all(rate)); }
   [[gnu::always_inline]] static V rate(V way, V rate) {

@@ -8,69 +8,127 @@
 
 namespace samestep {
 
-/// One at a time, in any scalar, with its own products.
+/// Two numbers side by side, in any scalar with its own products: while one waits for a product the processor
+/// works on the other.
+template <Scalar S>
+struct TwoScalars {
+  S a, b;
+
+  [[gnu::always_inline]] friend TwoScalars operator+(const TwoScalars& x, const TwoScalars& y) {
+    return {x.a + y.a, x.b + y.b};
+  }
+  [[gnu::always_inline]] friend TwoScalars operator-(const TwoScalars& x, const TwoScalars& y) {
+    return {x.a - y.a, x.b - y.b};
+  }
+  [[gnu::always_inline]] friend TwoScalars operator-(const TwoScalars& x) { return {-x.a, -x.b}; }
+};
+
+/// Two at a time, on every machine.
 template <Scalar S>
 struct ScalarLanes {
-  using V = S;
+  using V = TwoScalars<S>;
   using Numbers = PlainNumbers<S, true>;
   using Body = SoftBody<Numbers>;
-  static constexpr int kWidth = 1;
+  static constexpr int kWidth = 2;
 
-  static V zero() { return S(0); }
-  static V whole() { return S(1); }
-  static V all(S x) { return x; }
-  static V allSum(S x) { return x; }
-  static V load(const S* from) { return *from; }
-  static void store(S* to, V v) { *to = v; }
-  static V select(bool mask, V a, V b) { return mask ? a : b; }
-  static V greater(V a, V b) { return samestep::max(a, b); }
-  static V within(V x, V low, V high) { return samestep::clamp(x, low, high); }
-  static V dot2(V a, V b, V c, V d) { return dot(a, b, c, d); }
-  static V cross2(V a, V b, V c, V d) { return cross(a, b, c, d); }
-  static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
-    return dot4(a0, b0, a1, b1, a2, b2, a3, b3);
+  [[gnu::always_inline]] static int pointsOf(const ContactBlock<Numbers>& block, int lane) {
+    return max(block.count[lane], block.count[lane + 1]);
   }
-  static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
-  static V product(V a, V b) { return a * b; }
-  static V frictionLimit(V friction, V sum) { return friction * sum; }
-  static V rate(V way, V rate) { return way * rate; }
+  [[gnu::always_inline]] static V zero() { return all(S(0)); }
+  [[gnu::always_inline]] static V whole() { return all(S(1)); }
+  [[gnu::always_inline]] static V all(S x) { return {x, x}; }
+  [[gnu::always_inline]] static V allSum(S x) { return all(x); }
+  [[gnu::always_inline]] static V load(const S* from) { return {from[0], from[1]}; }
+  [[gnu::always_inline]] static void store(S* to, const V& v) {
+    to[0] = v.a;
+    to[1] = v.b;
+  }
+  struct Mask {
+    bool a, b;
+  };
+  [[gnu::always_inline]] static Mask above(const V& x, const V& y) { return {x.a > y.a, x.b > y.b}; }
+  [[gnu::always_inline]] static V select(Mask mask, const V& x, const V& y) {
+    return {mask.a ? x.a : y.a, mask.b ? x.b : y.b};
+  }
+  [[gnu::always_inline]] static V greater(const V& x, const V& y) { return {max(x.a, y.a), max(x.b, y.b)}; }
+  [[gnu::always_inline]] static V within(const V& x, const V& low, const V& high) {
+    return {clamp(x.a, low.a, high.a), clamp(x.b, low.b, high.b)};
+  }
+  [[gnu::always_inline]] static V dot2(const V& a, const V& b, const V& c, const V& d) {
+    return {dot(a.a, b.a, c.a, d.a), dot(a.b, b.b, c.b, d.b)};
+  }
+  [[gnu::always_inline]] static V cross2(const V& a, const V& b, const V& c, const V& d) {
+    return {cross(a.a, b.a, c.a, d.a), cross(a.b, b.b, c.b, d.b)};
+  }
+  [[gnu::always_inline]] static V dotOf4(const V& a0, const V& b0, const V& a1, const V& b1, const V& a2,
+                                         const V& b2, const V& a3, const V& b3) {
+    return {dot4(a0.a, b0.a, a1.a, b1.a, a2.a, b2.a, a3.a, b3.a),
+            dot4(a0.b, b0.b, a1.b, b1.b, a2.b, b2.b, a3.b, b3.b)};
+  }
+  [[gnu::always_inline]] static V near(const V& separation, const SoftConstants<Numbers>&) {
+    return separation;
+  }
+  [[gnu::always_inline]] static V product(const V& x, const V& y) { return {x.a * y.a, x.b * y.b}; }
+  [[gnu::always_inline]] static V frictionLimit(const V& friction, const V& sum) {
+    return product(friction, sum);
+  }
+  [[gnu::always_inline]] static V rate(const V& way, S rate) { return product(way, all(rate)); }
+  [[gnu::always_inline]] static V rate(const V& way, const V& rate) { return product(way, rate); }
   template <class Axis>
-  static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, V, V change) {
-    return axis.spinA[lane] * change;
+  [[gnu::always_inline]] static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, const V&,
+                                        const V& change) {
+    return product(load(axis.spinA + lane), change);
   }
   template <class Axis>
-  static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, V, V change) {
-    return axis.spinB[lane] * change;
+  [[gnu::always_inline]] static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, const V&,
+                                        const V& change) {
+    return product(load(axis.spinB + lane), change);
   }
-  static V soften(const Softness<S>& soft, V full, V before) {
-    return dot(soft.massScale, full, soft.impulseScale, before);
+  [[gnu::always_inline]] static V soften(const Softness<V>& soft, const V& full, const V& before) {
+    return dot2(soft.massScale, full, soft.impulseScale, before);
   }
   /// Its ranges are kept by contract, see docs/ranges.md.
-  static V checked(V v) { return v; }
-  static std::uint64_t left() { return 0; }
-  static void note(const char* name, V v) { highWater<S>(name, v); }
-
-  static V unless(std::uint8_t bits, int lane, V v) { return (bits >> lane & 1) != 0 ? S(0) : v; }
-  static const Softness<S>& softness(std::uint8_t stiff, int lane, const Softness<S>* of) {
-    return of[stiff >> lane & 1];
+  [[gnu::always_inline]] static V checked(const V& v) { return v; }
+  [[gnu::always_inline]] static std::uint64_t left() { return 0; }
+  [[gnu::always_inline]] static void note(const char* name, const V& v) {
+    highWater<S>(name, v.a);
+    highWater<S>(name, v.b);
   }
 
-  static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y, V& turn) {
-    const Body& body = bodies[*at];
-    x = body.velocity[0];
-    y = body.velocity[1];
-    turn = body.velocity[2];
+  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, const V& v) {
+    return select({(bits >> lane & 1) != 0, (bits >> lane & 2) != 0}, zero(), v);
   }
-  static void gatherMoved(const Body* bodies, const std::uint32_t* at, V& x, V& y, V& turn, V& bend) {
-    const Body& body = bodies[*at];
-    x = body.moved[0];
-    y = body.moved[1];
-    turn = body.moved[2];
-    bend = body.moved[3];
+  [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane, const Softness<S>* of) {
+    const Softness<S>& a = of[stiff >> lane & 1];
+    const Softness<S>& b = of[stiff >> lane >> 1 & 1];
+    return {{a.biasRate, b.biasRate}, {a.massScale, b.massScale}, {a.impulseScale, b.impulseScale}};
   }
-  static void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x, V y, V turn) {
-    if ((fixed & 1) != 0) return;
-    Body& body = bodies[*at];
+
+  [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
+                                                    V& turn) {
+    const Body& a = bodies[at[0]];
+    const Body& b = bodies[at[1]];
+    x = {a.velocity[0], b.velocity[0]};
+    y = {a.velocity[1], b.velocity[1]};
+    turn = {a.velocity[2], b.velocity[2]};
+  }
+  [[gnu::always_inline]] static void gatherMoved(const Body* bodies, const std::uint32_t* at, V& x, V& y,
+                                                 V& turn, V& bend) {
+    const Body& a = bodies[at[0]];
+    const Body& b = bodies[at[1]];
+    x = {a.moved[0], b.moved[0]};
+    y = {a.moved[1], b.moved[1]};
+    turn = {a.moved[2], b.moved[2]};
+    bend = {a.moved[3], b.moved[3]};
+  }
+  [[gnu::always_inline]] static void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed,
+                                                     const V& x, const V& y, const V& turn) {
+    if ((fixed & 1) == 0) put(bodies[at[0]], x.a, y.a, turn.a);
+    if ((fixed & 2) == 0) put(bodies[at[1]], x.b, y.b, turn.b);
+  }
+
+ private:
+  [[gnu::always_inline]] static void put(Body& body, S x, S y, S turn) {
     body.velocity[0] = x;
     body.velocity[1] = y;
     body.velocity[2] = turn;

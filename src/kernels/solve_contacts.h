@@ -40,7 +40,7 @@ template <class L, bool kSprings, class N = typename L::Numbers>
   V tangentSpeed = L::cross2(nx, dy, ny, dx) + L::load(block.surface + lane);
   V normalPart = L::zero();
   V tangentPart = L::zero();
-  const int points = L::kWidth == 1 ? block.count[lane] : block.points;
+  const int points = L::pointsOf(block, lane);
 
   for (int i = 0; i < points; ++i) {
     auto& axis = block.point[i].tangent;
@@ -81,7 +81,7 @@ template <class L, bool kSprings, class N = typename L::Numbers>
     V correction;
     if constexpr (kSprings) {
       const auto soft = L::softness(block.stiff, lane, constants.softness);
-      const auto free = separation > L::zero();
+      const auto free = L::above(separation, L::zero());
       const V push = L::greater(L::rate(separation, soft.biasRate), L::all(-constants.pushSpeed));
       const V target = L::select(free, gap, push);
       const V full = L::product(L::load(axis.mass + lane), lanes.checked(speed + target));
@@ -121,7 +121,7 @@ std::uint64_t passOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32
   L lanes;
   for (std::uint32_t i = 0; i < count; ++i) {
     for (int lane = 0; lane < kBlockLanes; lane += L::kWidth) {
-      if (L::kWidth == 1 && blocks[i].count[lane] == 0) break;
+      if (L::kWidth < kBlockLanes && blocks[i].count[lane] == 0) break;
       solveLanes<L, kSprings>(blocks[i], rests[i], lane, bodies, constants, lanes);
     }
   }

@@ -54,6 +54,7 @@ class Twins {
     cpSpaceSetGravity(peer_, toChipmunk(gravity));
     cpSpaceSetCollisionSlop(peer_, kSlop);
     cpSpaceSetCollisionBias(peer_, kBias);
+    own_.setSolver(SolverKind::sequentialImpulses);
     own_.setGravity(convert<S>(gravity));
     own_.setCollisionSlop(S(kSlop));
     own_.setCollisionBias(S(kBias));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What scripts/platforms runs on each platform: runner [--recorded] [--ticks N] RECORDING...
+// Other options are refused.
 // Prints a line about the platform, then one for each tick of each recording: its name, the tick, the hash of
 // the world after it, computed here; with --recorded the hash that the recording carries. Output goes through
 // printf, as <iostream> would be most of the program.
@@ -73,6 +74,8 @@ void describePlatform() {
   std::printf("platform: %d %s %.*s\n", static_cast<int>(8 * sizeof(void*)),
               std::endian::native == std::endian::little ? "little" : "big", static_cast<int>(name.size()),
               name.data());
+  // So that it is seen even if the program does not come to its end.
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -87,6 +90,8 @@ int main(int argumentCount, char** arguments) {
       options.recorded = true;
     } else if (argument == "--ticks" && i + 1 < argumentCount) {
       options.ticks = std::strtoull(arguments[++i], nullptr, 10);
+    } else if (argument.starts_with("--")) {
+      samestep::stop(arguments[i], "unknown option");
     } else {
       samestep::runFile(arguments[i], options);
     }
