@@ -68,7 +68,7 @@ TYPED_TEST(FieldsTest, FieldsAccountForEveryByte) {
   EXPECT_EQ(leavesOf(Pair<S>()).bytes() + kMaxContactsPerPair * (kTotals + kContactFiller) + kGenerations +
                 kSurfaces + kSolved,
             sizeof(Pair<S>));
-  EXPECT_EQ(leavesOf(Settings<S>()).bytes() + 3, sizeof(Settings<S>));
+  EXPECT_EQ(leavesOf(Settings<S>()).bytes() + 2, sizeof(Settings<S>));
   EXPECT_EQ(leavesOf(HandlerBinding()).bytes() + 3, sizeof(HandlerBinding));
 }
 
