@@ -223,8 +223,9 @@ TYPED_TEST(ContactGeometryTest, ARollingDiscIsNotDrivenOn) {
   space.setSolver(SolverKind::softStep);
   space.setGravity({S(0), S(-10)});
   const S speed = ratio<S>(1, 100), half = ratio<S>(1, 2);
-  space.add(boxShape<S>(space.staticBody(), BB<S>(S(-20), S(-1), S(20), S(0))));
+  const ShapeId floor = space.add(boxShape<S>(space.staticBody(), BB<S>(S(-20), S(-1), S(20), S(0))));
   const ShapeId disc = addDisc<S>(space, {S(0), half}, half, S(1), {speed, S(0)});
+  for (const ShapeId id : {floor, disc}) space.change(id, [](Shape<S>& shape) { shape.setFriction(S(1)); });
   Body<S>& body = space.body(bodyOf(space, disc));
   body.setAngularVelocity(-speed / half);
   for (int i = 0; i < 600; ++i) space.step(kTick<S>);
