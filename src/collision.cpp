@@ -120,8 +120,8 @@ void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, Col
     const FaceAxis<S> axis = bestFace(a, b, reach, start);
     info.id = axis.id();
     if (axis.separation > reach) return;
-    if (axis.separation <= S(0) || facesVertex(a, b, axis)) return touchFace(a, b, axis, margin, info);
-    // Rounded corners near each other.
+    if (axis.separation < -kFlat<S> || facesVertex(a, b, axis)) return touchFace(a, b, axis, margin, info);
+    // Corners near each other; thin ones may be far apart where all faces are within rounding of touching.
   }
   touchNearest(a, b, start, margin, info, stats);
 }

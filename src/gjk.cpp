@@ -13,10 +13,10 @@ enum class Part { from, inside, to };
 
 template <Scalar S>
 Part nearestPart(const Vector<S>& v0, const Vector<S>& v1) {
+  // Each end by itself: in double a sum of both would lose an end that almost coincides with the origin.
   const Vector<S> delta = v1 - v0;
-  const Wide<S> along = exactDot(delta, v0 + v1), size = exactDot(delta, delta);
-  if (along >= size) return Part::from;
-  return along <= -size ? Part::to : Part::inside;
+  if (sign(exactDot(delta, v0)) >= 0) return Part::from;
+  return sign(exactDot(delta, v1)) <= 0 ? Part::to : Part::inside;
 }
 
 /// An edge of the difference with the origin on its left or on its line.

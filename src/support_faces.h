@@ -23,6 +23,10 @@ struct FaceAxis {
   static constexpr std::uint32_t kTag = 0x80000000u, kOnB = 0x100u, kFace = 0xffu;
 };
 
+/// Faces whose separations differ by no more than this, in metres, count as equal.
+template <Scalar S>
+inline constexpr S kFlat = S(0x1p-24);
+
 /// How far a face is from the nearest vertex of another shape.
 template <Scalar S>
 FaceAxis<S> separationAt(const PlacedShape<S>& shape, int face, const PlacedShape<S>& other, bool onB) {
@@ -60,8 +64,7 @@ FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, 
   }
   // Of two faces that lie flat on each other it is A's, whatever rounding makes of it: the answer stays the
   // same from step to step, and a segment is touched in its face, not at its end.
-  const S flat = S(0x1p-24);
-  S bound = best.separation + flat;
+  S bound = best.separation + kFlat<S>;
   for (int i = 0; i < b.count && best.separation <= reach; ++i) {
     const Axis axis = separationAt(b, i, a, true);
     if (axis.separation > bound) {
@@ -72,7 +75,8 @@ FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, 
   return best;
 }
 
-/// Whether the nearest vertex lies above the inside of the face: then nothing of the shapes is nearer.
+/// Whether the nearest vertex lies above the inside of the face, or below it: then, apart, nothing of the
+/// shapes is nearer.
 template <Scalar S>
 bool facesVertex(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis) {
   const PlacedShape<S>& shape = axis.onB ? b : a;

@@ -156,6 +156,29 @@ TYPED_TEST(GjkTest, SegmentsInOneLineHaveTheDistanceOfTheirEnds) {
   EXPECT_EQ(found.vertexB, 0);
 }
 
+#ifndef SAMESTEP_FIXED_ONLY
+// The ends of an edge of the Minkowski difference are compared with the origin one by one: in a sum, an end
+// that almost coincides with it would be lost, and with it which way is out.
+TEST(GjkDoubleTest, CornersAnUlpApartAreSeparatedByTheirNormal) {
+  const std::vector<Vector<double>> dust = {{9.9800527133012628e-06, -1.4551915228366847e-07},
+                                            {1.0119052602911938e-05, 2.8172511603913219e-08},
+                                            {9.9800527086505776e-06, 2.8172507882118212e-08}};
+  const std::vector<Vector<double>> large = {{9.9800527095794678e-06, -1.4551915228366852e-07},
+                                             {1024.0000099674799, 0.0039060988929122686},
+                                             {1024.0000099677127, 1023.9999998314306}};
+  const Placement<double> a(polyShapeRaw<double>(BodyId(), dust), Transform<double>());
+  const Placement<double> b(polyShapeRaw<double>(BodyId(), large), Transform<double>());
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  const Vector<double> axis =
+      perp(Vector<double>((a->box.left - b->box.left) + (a->box.right - b->box.right),
+                          (a->box.bottom - b->box.bottom) + (a->box.top - b->box.top)));
+  const ClosestPoints<double> found = gjk<double>(pair, 0, axis, nullptr);
+  EXPECT_NEAR(found.distance, 0, 1e-12);
+  // All of the large one lies ahead of all of the small one.
+  EXPECT_GE(dot(pair.farthest(-found.normal).ab, found.normal), -1e-6);
+}
+#endif
+
 // MIS section 13, SameVertices.
 TYPED_TEST(GjkTest, EpaOnAPolygonWithoutLengthIsAnInternalError) {
   using S = TypeParam;
