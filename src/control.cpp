@@ -32,7 +32,9 @@ Points<S> partition(Points<S> points, const Vector<S>& a, const Vector<S>& b, S 
   while (head < end) {
     const Wide<S> area = exactCross(points[head] - a, along);
     if (area > limit) {
-      if (area > farthest) {
+      // Of several equally far, which lie on one line, only the ends are corners of the hull.
+      const bool onward = area == farthest && sign(exactDot(points[head] - points[pivot], along)) > 0;
+      if (area > farthest || onward) {
         farthest = area;
         pivot = head;
       }

@@ -104,6 +104,21 @@ TYPED_TEST(ControlTest, HullOfALineHasTwoPointsAndOfOnePointOne) {
   EXPECT_EQ(TestFixture::hullOf({at(4, 5)}), (typename TestFixture::Points{at(4, 5)}));
 }
 
+// Three points on an edge are all equally far from a line along it: only the outer two are corners.
+TYPED_TEST(ControlTest, HullLeavesOutPointsOnEdgesWhateverLineTheyAreFoundFrom) {
+  const auto at = [](int x, int y) { return TestFixture::at(x, y); };
+  const typename TestFixture::Points points = {at(7, 1),  at(-5, 0), at(-8, -3), at(-7, -6), at(7, 0),
+                                               at(4, -3), at(1, -6), at(1, -5),  at(-2, -8), at(-5, 6)};
+  TestFixture::expectHull(TestFixture::hullOf(points), points);
+  Random random(5);
+  for (int round = 0; round < 200; ++round) {
+    typename TestFixture::Points grid(static_cast<std::size_t>(random.between(8, 30)));
+    for (auto& v : grid) v = at(random.between(-3, 3), random.between(-3, 3));
+    grid.insert(grid.end(), {at(-4, 0), at(4, 0), at(0, 4), at(0, -4)});
+    TestFixture::expectHull(TestFixture::hullOf(grid), grid);
+  }
+}
+
 TYPED_TEST(ControlTest, HullOfScatteredPointsIsConvexAndHoldsThemAllInPlaceToo) {
   using S = TypeParam;
   Random random(3);
