@@ -177,6 +177,25 @@ TEST(GjkDoubleTest, CornersAnUlpApartAreSeparatedByTheirNormal) {
   // All of the large one lies ahead of all of the small one.
   EXPECT_GE(dot(pair.farthest(-found.normal).ab, found.normal), -1e-6);
 }
+
+// A vertex may seem to lie outside of an edge that is not its own: it must not be put in twice.
+TEST(GjkDoubleTest, EpaTakesNoVertexTwice) {
+  const double w = 5.5879354476928711e-09;
+  const std::vector<Vector<double>> blade = {{w, -8192}, {w, 8192}, {-w, 8192}, {-w, -8192}};
+  const std::vector<Vector<double>> points = {
+      {-2.3283064365386963e-10, 0}, {0, 0},
+      {0.1318359375, 0.1318359375}, {-0.1953125, -0.1337890625},
+      {0.0048828125, 0.1318359375}, {-9.8044984042644501e-07, 0.0048828125}};
+  const Vector<double> turn = forAngle(16384.000000011176);
+  const Placement<double> a(polyShapeRaw<double>(BodyId(), blade),
+                            Transform<double>::rigid({0, -26.24609375}, perp(turn)));
+  const Placement<double> b(polyShape<double>(BodyId(), points),
+                            Transform<double>::rigid({0, -26.24609375}, -turn));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  for (const std::uint32_t start : {0u, 0x00385822u, 0x00010200u, 0x03000102u, 0x02010300u}) {
+    EXPECT_NO_THROW(gjk<double>(pair, start, Vector<double>(), nullptr)) << start;
+  }
+}
 #endif
 
 // MIS section 13, SameVertices.
