@@ -194,7 +194,9 @@ void run(Input input) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const samestep::fuzz::Input input(data, size);
   // Checked in place of Fixed: the same code, and every overflow is a finding.
-  samestep::fuzz::run<samestep::CheckedFixed>(input);
-  if (size > 0 && (data[0] & 1) != 0) samestep::fuzz::run<double>(input);
+  samestep::fuzz::guarded([&] {
+    samestep::fuzz::run<samestep::CheckedFixed>(input);
+    if (size > 0 && (data[0] & 1) != 0) samestep::fuzz::run<double>(input);
+  });
   return 0;
 }

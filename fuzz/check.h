@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 
 namespace samestep::fuzz {
 
@@ -37,6 +38,17 @@ inline void expectAtMost(double value, double limit, const char* claim) {
 }
 inline void expectNear(double a, double b, double tolerance, const char* claim) {
   expectAtMost(std::fabs(a - b), tolerance, claim);
+}
+
+/// Runs a target. Whatever it lets out is a finding: an internal error, or the overflow of a checked number.
+template <class Run>
+void guarded(Run&& run) {
+  try {
+    run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "fuzz: thrown: %s\n", error.what());
+    fail("nothing is thrown here");
+  }
 }
 
 }  // namespace samestep::fuzz

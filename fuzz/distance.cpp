@@ -92,7 +92,7 @@ void tryVertices(const Vector<S>* points, int count, const Vector<S>* others, in
       answer.corners = corner && (distance < answer.distance || answer.corners);
       answer.distance = distance;
     };
-    if (count == 1) closer(lengthOf(others[i] - points[0]), true);
+    closer(lengthOf(others[i] - points[0]), true);
     eachEdge(points, count, [&](const Vector<S>& from, const Vector<S>& to) {
       bool corner = false;
       const double distance = distanceToEdge(from, to, others[i], corner);
@@ -137,7 +137,7 @@ BruteAnswer bruteDistance(const Cores<S>& cores, double limit) {
   answer.distance = answer.bestFace;
   // Without area between them, the cores may be apart along a line that no face is across.
   const bool flat = cores.countA <= 2 && cores.countB <= 2;
-  const bool noFaces = cores.countA == 1 && cores.countB == 1;
+  const bool noFaces = answer.bestFace == -1e300;
   if (!noFaces && (answer.bestFace > limit || answer.bestFace < 0 || (answer.bestFace == 0 && !flat))) {
     return answer;
   }
@@ -176,10 +176,30 @@ double widthTowards(const Vector<S>* points, int count, const Vector<S>& directi
 }
 
 template <Scalar S>
+double thickness(const Cores<S>& cores) {
+  double least = 1e300;
+  const auto widthOf = [](const Vector<S>* points, int count, const Vector<S>& edge) {
+    Product<S> low = crossOf(points[0], edge), high = low;
+    for (int i = 1; i < count; ++i) {
+      low = std::min(low, crossOf(points[i], edge));
+      high = std::max(high, crossOf(points[i], edge));
+    }
+    return squareMetres<S>(high - low);
+  };
+  for (const auto& [points, count] : {std::pair(cores.a, cores.countA), std::pair(cores.b, cores.countB)}) {
+    eachEdge(points, count, [&](const Vector<S>& from, const Vector<S>& to) {
+      const Vector<S> edge = to - from;
+      const double width = widthOf(cores.a, cores.countA, edge) + widthOf(cores.b, cores.countB, edge);
+      least = std::min(least, width / lengthOf(edge));
+    });
+  }
+  return least;
+}
+
+template <Scalar S>
 double distanceToCore(const Vector<S>* points, int count, const Vector<S>& p) {
-  double outside = -1e300, nearest = 1e300;
+  double outside = -1e300, nearest = lengthOf(p - points[0]);
   bool corner = false;
-  if (count == 1) return lengthOf(p - points[0]);
   eachEdge(points, count, [&](const Vector<S>& from, const Vector<S>& to) {
     outside = std::max(outside, squareMetres<S>(crossOf(p - from, to - from)) / lengthOf(to - from));
     nearest = std::min(nearest, distanceToEdge(from, to, p, corner));
@@ -275,6 +295,8 @@ template double separationAlong<double>(const Cores<double>&, const Vector<doubl
 template double separationAlong<Fixed>(const Cores<Fixed>&, const Vector<Fixed>&);
 template double widthTowards<double>(const Vector<double>*, int, const Vector<double>&);
 template double widthTowards<Fixed>(const Vector<Fixed>*, int, const Vector<Fixed>&);
+template double thickness<double>(const Cores<double>&);
+template double thickness<Fixed>(const Cores<Fixed>&);
 template double distanceToCore<double>(const Vector<double>*, int, const Vector<double>&);
 template double distanceToCore<Fixed>(const Vector<Fixed>*, int, const Vector<Fixed>&);
 template bool nearExactDistance<double>(const Cores<double>&, double, double);

@@ -40,6 +40,11 @@ double separationAlong(const Cores<S>& cores, const Vector<S>& normal);
 template <Scalar S>
 double widthTowards(const Vector<S>* points, int count, const Vector<S>& direction);
 
+/// The least width of the cores' Minkowski difference along the normals of their faces, metres: of two
+/// parallel segments 0.
+template <Scalar S>
+double thickness(const Cores<S>& cores);
+
 /// How far a point, relative to the same origin, lies outside of a convex core.
 template <Scalar S>
 double distanceToCore(const Vector<S>* points, int count, const Vector<S>& p);

@@ -48,6 +48,14 @@ constexpr std::uint8_t byteOf(std::uint64_t word, int index) {
   return static_cast<std::uint8_t>(word >> (8 * index));
 }
 
+/// A hash of an input, for checks too dear to make on each.
+constexpr std::uint64_t mixed(const std::uint8_t* bytes, std::size_t size) {
+  std::uint64_t hash = size;
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  hash = (hash ^ hash >> 32) * 0x9e3779b97f4a7c15u;
+  return hash ^ hash >> 32;
+}
+
 /// What a number that Input makes never exceeds in size, metres.
 inline constexpr int kMaxNumber = 1 << 20;
 

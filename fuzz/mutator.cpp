@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "dice.h"
 #include "input.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t maxSize);
@@ -19,21 +20,6 @@ namespace samestep::fuzz {
 namespace {
 
 constexpr std::size_t kWord = Input::kWord;
-
-class Dice {
- public:
-  explicit Dice(unsigned int seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(next() % count); }
-
- private:
-  std::uint64_t state_;
-};
 
 std::uint64_t load(const std::uint8_t* at) {
   std::uint64_t value = 0;
