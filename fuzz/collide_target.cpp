@@ -130,6 +130,7 @@ CollisionInfo<S> touch(const PlacedShape<S>& a, const PlacedShape<S>& b, Collisi
 template <Scalar S>
 double width(const Cores<S>& cores, const CollisionInfo<S>& info) {
   if (info.count == 0) return 1;
+  if (leastWidth(cores) < 64 * 0x1p-32) return 0;
   return std::min(widthTowards(cores.a, cores.countA, info.normal),
                   widthTowards(cores.b, cores.countB, -info.normal));
 }

@@ -175,21 +175,36 @@ double widthTowards(const Vector<S>* points, int count, const Vector<S>& directi
   return width;
 }
 
+/// How far points reach across an edge, times its length.
+template <Scalar S>
+double areaAcross(const Vector<S>* points, int count, const Vector<S>& edge) {
+  Product<S> low = crossOf(points[0], edge), high = low;
+  for (int i = 1; i < count; ++i) {
+    low = std::min(low, crossOf(points[i], edge));
+    high = std::max(high, crossOf(points[i], edge));
+  }
+  return squareMetres<S>(high - low);
+}
+
+template <Scalar S>
+double leastWidth(const Cores<S>& cores) {
+  double least = 1e300;
+  for (const auto& [points, count] : {std::pair(cores.a, cores.countA), std::pair(cores.b, cores.countB)}) {
+    if (count < 3) continue;
+    eachEdge(points, count, [&, own = points, size = count](const Vector<S>& from, const Vector<S>& to) {
+      least = std::min(least, areaAcross(own, size, to - from) / lengthOf(to - from));
+    });
+  }
+  return least;
+}
+
 template <Scalar S>
 double thickness(const Cores<S>& cores) {
   double least = 1e300;
-  const auto widthOf = [](const Vector<S>* points, int count, const Vector<S>& edge) {
-    Product<S> low = crossOf(points[0], edge), high = low;
-    for (int i = 1; i < count; ++i) {
-      low = std::min(low, crossOf(points[i], edge));
-      high = std::max(high, crossOf(points[i], edge));
-    }
-    return squareMetres<S>(high - low);
-  };
   for (const auto& [points, count] : {std::pair(cores.a, cores.countA), std::pair(cores.b, cores.countB)}) {
     eachEdge(points, count, [&](const Vector<S>& from, const Vector<S>& to) {
       const Vector<S> edge = to - from;
-      const double width = widthOf(cores.a, cores.countA, edge) + widthOf(cores.b, cores.countB, edge);
+      const double width = areaAcross(cores.a, cores.countA, edge) + areaAcross(cores.b, cores.countB, edge);
       least = std::min(least, width / lengthOf(edge));
     });
   }
@@ -295,6 +310,8 @@ template double separationAlong<double>(const Cores<double>&, const Vector<doubl
 template double separationAlong<Fixed>(const Cores<Fixed>&, const Vector<Fixed>&);
 template double widthTowards<double>(const Vector<double>*, int, const Vector<double>&);
 template double widthTowards<Fixed>(const Vector<Fixed>*, int, const Vector<Fixed>&);
+template double leastWidth<double>(const Cores<double>&);
+template double leastWidth<Fixed>(const Cores<Fixed>&);
 template double thickness<double>(const Cores<double>&);
 template double thickness<Fixed>(const Cores<Fixed>&);
 template double distanceToCore<double>(const Vector<double>*, int, const Vector<double>&);

@@ -45,6 +45,11 @@ double widthTowards(const Vector<S>* points, int count, const Vector<S>& directi
 template <Scalar S>
 double thickness(const Cores<S>& cores);
 
+/// The least width of the two cores that are polygons, metres: below some units rounding may have turned one
+/// inside out.
+template <Scalar S>
+double leastWidth(const Cores<S>& cores);
+
 /// How far a point, relative to the same origin, lies outside of a convex core.
 template <Scalar S>
 double distanceToCore(const Vector<S>* points, int count, const Vector<S>& p);

@@ -13,12 +13,21 @@ struct NearestEdge {
   S distance{};     ///< Metres from the line through the edge, positive outside.
 };
 
-/// Which part of an edge is nearest to a point: -1 where it begins, 1 where it ends, 0 between. Exact.
+/// Which part of an edge is nearest to a point: -1 where it begins, 1 where it ends, 0 between. A polygon's
+/// edge may be so short that rounding turned it; its normal was turned with the shape.
 template <Scalar S>
 int partOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point) {
   const Vector<S> from = shape.planes[(edge == 0 ? shape.count : edge) - 1].v0, to = shape.planes[edge].v0;
-  if (sign(exactDot(to - from, point - from)) <= 0) return -1;
-  return sign(exactDot(to - from, point - to)) >= 0 ? 1 : 0;
+  const Vector<S> along = shape.type == ShapeType::segment ? to - from : perp(shape.planes[edge].n);
+  if (sign(exactDot(along, point - from)) <= 0) return -1;
+  return sign(exactDot(along, point - to)) >= 0 ? 1 : 0;
+}
+
+/// Whether a point lies on the outer side of an edge of a polygon, or on its line. Exact.
+template <Scalar S>
+bool outsideOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point) {
+  const Vector<S> from = shape.planes[(edge == 0 ? shape.count : edge) - 1].v0, to = shape.planes[edge].v0;
+  return sign(exactCross(to - from, point - from)) <= 0;
 }
 
 /// The nearest point of a convex core lies on the edge whose line is farthest below the point, since of all
@@ -42,6 +51,8 @@ NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) 
         found.edge = i;
       }
     }
+    // Deeper inside than any rounding: a vertex is never nearest there.
+    if (found.distance < S(-0x1p-16)) return found;
   }
 
   for (int step = 0; step < shape.count; ++step) {
@@ -53,7 +64,9 @@ NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) 
     // Of two nearly parallel edges rounding may have preferred the wrong one: the vertex between them is
     // nearest only if both say so.
     if (shape.type == ShapeType::segment || partOfEdge(shape, beyond, point) == -part) {
-      found.vertex = part < 0 ? previous : found.edge;
+      const bool outside = shape.type == ShapeType::segment || outsideOfEdge(shape, found.edge, point) ||
+                           outsideOfEdge(shape, beyond, point);
+      if (outside) found.vertex = part < 0 ? previous : found.edge;
       return found;
     }
     found.edge = beyond;

@@ -113,6 +113,22 @@ TYPED_TEST(GjkTest, EveryStartLeadsToTheSameDistance) {
   }
 }
 
+// Vertices of the start that are no corners of the difference would spoil the polygon that grows in it.
+TYPED_TEST(GjkTest, EveryStartMeasuresAnOverlapWithDustRight) {
+  using S = TypeParam;
+  const auto unit = [](int x, int y) { return Vector<S>(S(x) * S(0x1p-32), S(y) * S(0x1p-32)); };
+  const Placement<S> dust(
+      polyShape<S>(BodyId(), std::vector<Vector<S>>{unit(0, -1024), unit(242, 5), unit(-4, 290)}),
+      Transform<S>::rigid(unit(3, 5), S(1) / S(8)));
+  const Placement<S> box(boxShape<S>(BodyId(), S(16384), S(16384)), Transform<S>::rigid(Vector<S>(), S(2)));
+  const S cold = TestFixture::search(dust, box).distance;
+  EXPECT_NEAR(double(cold), -8192, 1e-4);
+  for (std::uint32_t start = 0; start < 3 * 4 * 3 * 4; ++start) {
+    const std::uint32_t id = start % 3 << 24 | start / 3 % 4 << 16 | start / 12 % 3 << 8 | start / 36;
+    EXPECT_EQ(TestFixture::search(dust, box, id).distance, cold) << id;
+  }
+}
+
 TYPED_TEST(GjkTest, KnowsTheVerticesThatAreNearest) {
   using S = TypeParam;
   const Shape<S> box = boxShape<S>(BodyId(), S(2), S(2));
