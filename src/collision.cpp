@@ -71,6 +71,20 @@ bool endsMayTouch(const PlacedShape<S>& a, const PlacedShape<S>& b, const Closes
   return endMayTouch(a, closest.vertexA, closest.normal) && endMayTouch(b, closest.vertexB, -closest.normal);
 }
 
+/// Whether some of the edge towards a face lies above or below it.
+template <Scalar S>
+bool facesEdge(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis) {
+  const PlacedShape<S>&reference = axis.onB ? b : a, &other = axis.onB ? a : b;
+  const SupportEdge<S> face = edgeTo(reference, axis.face),
+                       edge = edgeAt(other, axis.vertex, -reference.planes[axis.face].n);
+  const Vector<S> along = face.b - face.a;
+  const auto reaches = [&](const Vector<S>& v, const Vector<S>& end) {
+    return sign(exactDot(along, v - end));
+  };
+  return (reaches(edge.a, face.a) >= 0 || reaches(edge.b, face.a) >= 0) &&
+         (reaches(edge.a, face.b) <= 0 || reaches(edge.b, face.b) <= 0);
+}
+
 /// Two shapes of which a face is nearest to a vertex.
 template <Scalar S>
 void touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis, S margin,
@@ -117,8 +131,11 @@ void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, Col
     const FaceAxis<S> axis = bestFace(a, b, reach, start);
     info.id = axis.id();
     if (axis.separation > reach) return;
-    if (axis.separation <= S(0) || facesVertex(a, b, axis)) return touchFace(a, b, axis, margin, info);
-    // Rounded corners near each other.
+    if (axis.separation < -kFlat<S> || facesVertex(a, b, axis) ||
+        (axis.separation <= S(0) && facesEdge(a, b, axis))) {
+      return touchFace(a, b, axis, margin, info);
+    }
+    // Corners near each other; thin ones may be far apart where all faces are within rounding of touching.
   }
   touchNearest(a, b, start, margin, info, stats);
 }

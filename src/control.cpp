@@ -20,8 +20,15 @@ struct HullPart {
   bool emitPivotFirst;  // The part left of the pivot is done.
 };
 
-/// MIS: QHullPartition. Brings the points farther right of a -> b than the tolerance to the front, the
-/// farthest first, and returns them.
+/// Whether a point next to the line from a to b lies farther than the tolerance beyond an end.
+template <Scalar S>
+bool beyondEnd(const Vector<S>& point, const Vector<S>& a, const Vector<S>& b, S tolerance) {
+  if (sign(exactDot(point - a, b - a)) < 0) return !near(point, a, tolerance);
+  return sign(exactDot(point - b, b - a)) > 0 && !near(point, b, tolerance);
+}
+
+/// MIS: QHullPartition. Brings the points to the right of a -> b that are farther from it than the tolerance
+/// to the front, the farthest from the line first, and returns them.
 template <Scalar S>
 Points<S> partition(Points<S> points, const Vector<S>& a, const Vector<S>& b, S tolerance) {
   if (points.empty()) return {};
@@ -31,8 +38,10 @@ Points<S> partition(Points<S> points, const Vector<S>& a, const Vector<S>& b, S 
   std::size_t pivot = 0, head = 0, end = points.size();
   while (head < end) {
     const Wide<S> area = exactCross(points[head] - a, along);
-    if (area > limit) {
-      if (area > farthest) {
+    if (area > limit || (sign(area) > 0 && beyondEnd(points[head], a, b, tolerance))) {
+      // Of several equally far, which lie on one line, only the ends are corners of the hull.
+      const bool onward = area == farthest && sign(exactDot(points[head] - points[pivot], along)) > 0;
+      if (area > farthest || onward) {
         farthest = area;
         pivot = head;
       }

@@ -137,10 +137,9 @@ void appendDigit(Token& token, int digit) {
 }
 
 bool readMantissa(Reader& reader, Token& token) {
-  if (!reader.atDigit()) return false;
+  const bool whole = reader.atDigit();
   while (reader.atDigit()) appendDigit(token, reader.takeDigit());
-  if (!reader.take('.')) return true;
-  if (!reader.atDigit()) return false;
+  if (!reader.take('.') || !reader.atDigit()) return whole;
   for (; reader.atDigit(); --token.exponent) appendDigit(token, reader.takeDigit());
   return true;
 }

@@ -41,6 +41,16 @@ int nearest(const HullEdge<S>* hull, int count) {
   return best;
 }
 
+/// Whether a point is a vertex of the polygon already. In double, where a vertex may seem to lie outside of
+/// an edge that is not its own, it need not be an end of that edge.
+template <Scalar S>
+bool isVertex(const HullEdge<S>* hull, int count, const Vector<S>& point) {
+  for (int i = 0; i < count; ++i) {
+    if (hull[i].from.ab == point) return true;
+  }
+  return false;
+}
+
 /// Puts p between the ends of edge `at` and leaves out what is then no corner any more.
 /// @return how many vertices `grown` has
 template <Scalar S>
@@ -92,8 +102,7 @@ ClosestPoints<S> epa(const SupportPair<S>& pair, const MinkowskiPoint<S>& v0, co
     const MinkowskiPoint<S>& to = hull[at + 1 < count ? at + 1 : 0].from;
     const MinkowskiPoint<S> p = pair.farthest(perp(to.ab - from.ab));
 
-    const bool known = p.sameFeatures(from) || p.sameFeatures(to);
-    if (known || iteration >= kMaxEpaIterations || !leftOf(from.ab, to.ab, p.ab)) {
+    if (isVertex(hull, count, p.ab) || iteration >= kMaxEpaIterations || !leftOf(from.ab, to.ab, p.ab)) {
       if (stats != nullptr && iteration >= kWarnEpaIterations) ++stats->highEpaIterations;
       return closestPoints(hull[at], to);
     }

@@ -13,10 +13,10 @@ enum class Part { from, inside, to };
 
 template <Scalar S>
 Part nearestPart(const Vector<S>& v0, const Vector<S>& v1) {
+  // Each end by itself: in double a sum of both would lose an end that almost coincides with the origin.
   const Vector<S> delta = v1 - v0;
-  const Wide<S> along = exactDot(delta, v0 + v1), size = exactDot(delta, delta);
-  if (along >= size) return Part::from;
-  return along <= -size ? Part::to : Part::inside;
+  if (sign(exactDot(delta, v0)) >= 0) return Part::from;
+  return sign(exactDot(delta, v1)) <= 0 ? Part::to : Part::inside;
 }
 
 /// An edge of the difference with the origin on its left or on its line.
@@ -101,7 +101,8 @@ template <Scalar S>
 ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vector<S>& axis,
                      CollisionStats* stats) {
   Edge<S> edge;
-  if (!startFrom(pair, start, edge)) {
+  const bool warm = startFrom(pair, start, edge);
+  if (!warm) {
     const Vector<S> across = isZero(axis) ? Vector<S>(S(0), S(1)) : axis;
     edge.v0 = pair.farthest(across);
     edge.v1 = pair.farthest(-across);
@@ -118,6 +119,8 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
       return closestPoints(edge);
     }
     if (leftOf(p.ab, edge.v0.ab, Vector<S>()) && leftOf(edge.v1.ab, p.ab, Vector<S>())) {
+      // Vertices of an old answer may lie inside the difference by now, where no polygon may begin.
+      if (warm) return gjk(pair, 0, axis, stats);
       if (late) ++stats->highGjkToEpaIterations;
       return epa(pair, edge.v0, p, edge.v1, stats);
     }

@@ -13,9 +13,27 @@ struct NearestEdge {
   S distance{};     ///< Metres from the line through the edge, positive outside.
 };
 
+/// Which part of an edge is nearest to a point: -1 where it begins, 1 where it ends, 0 between. A polygon's
+/// edge may be so short that rounding turned it; its normal was turned with the shape.
+template <Scalar S>
+int partOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point) {
+  const Vector<S> from = shape.planes[(edge == 0 ? shape.count : edge) - 1].v0, to = shape.planes[edge].v0;
+  const Vector<S> along = shape.type == ShapeType::segment ? to - from : perp(shape.planes[edge].n);
+  if (sign(exactDot(along, point - from)) <= 0) return -1;
+  return sign(exactDot(along, point - to)) >= 0 ? 1 : 0;
+}
+
+/// Whether a point lies on the outer side of an edge of a polygon, or on its line. Exact.
+template <Scalar S>
+bool outsideOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point) {
+  const Vector<S> from = shape.planes[(edge == 0 ? shape.count : edge) - 1].v0, to = shape.planes[edge].v0;
+  return sign(exactCross(to - from, point - from)) <= 0;
+}
+
 /// The nearest point of a convex core lies on the edge whose line is farthest below the point, since of all
 /// unit normals around a corner one of its two edges is the closest to any direction between them. Which part
-/// of that edge is nearest is decided exactly. A point inside a polygon has no nearest vertex.
+/// of that edge is nearest is decided exactly. A point inside a polygon has no nearest vertex: above or below
+/// the inside of an edge the sign of the distance may be rounded, before a thin corner it may not.
 template <Scalar S>
 NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) {
   const Plane<S>* planes = shape.planes;
@@ -33,16 +51,26 @@ NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) 
         found.edge = i;
       }
     }
-    if (found.distance <= S(0)) return found;
+    // Deeper inside than any rounding: a vertex is never nearest there.
+    if (found.distance < S(-0x1p-16)) return found;
   }
 
-  const int previous = (found.edge == 0 ? shape.count : found.edge) - 1;
-  const Vector<S> from = planes[previous].v0, to = planes[found.edge].v0;
-  const Vector<S> along = to - from;
-  if (sign(exactDot(along, point - from)) <= 0) {
-    found.vertex = previous;
-  } else if (sign(exactDot(along, point - to)) >= 0) {
-    found.vertex = found.edge;
+  for (int step = 0; step < shape.count; ++step) {
+    const int part = partOfEdge(shape, found.edge, point);
+    if (part == 0) return found;
+    const int previous = (found.edge == 0 ? shape.count : found.edge) - 1;
+    const int next = found.edge + 1 < shape.count ? found.edge + 1 : 0;
+    const int beyond = part < 0 ? previous : next;
+    // Of two nearly parallel edges rounding may have preferred the wrong one: the vertex between them is
+    // nearest only if both say so.
+    if (shape.type == ShapeType::segment || partOfEdge(shape, beyond, point) == -part) {
+      const bool outside = shape.type == ShapeType::segment || outsideOfEdge(shape, found.edge, point) ||
+                           outsideOfEdge(shape, beyond, point);
+      if (outside) found.vertex = part < 0 ? previous : found.edge;
+      return found;
+    }
+    found.edge = beyond;
+    found.distance = dot(planes[beyond].n, point - planes[beyond].v0);
   }
   return found;
 }

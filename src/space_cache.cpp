@@ -210,6 +210,8 @@ std::span<const std::uint32_t> Space<S>::threadOf(BodyId id) {
         [&](std::uint32_t body, std::uint32_t pair) { impl.threadPairs[impl.threadFill[body]++] = pair; });
     impl.threadsKnown = true;
   }
+  // A body added since then touches nothing yet.
+  if (id.index + 1 >= impl.threadStart.size()) return {};
   return {impl.threadPairs.data() + impl.threadStart[id.index],
           impl.threadPairs.data() + impl.threadStart[id.index + 1]};
 }

@@ -23,6 +23,10 @@ struct FaceAxis {
   static constexpr std::uint32_t kTag = 0x80000000u, kOnB = 0x100u, kFace = 0xffu;
 };
 
+/// Faces whose separations differ by no more than this, in metres, count as equal.
+template <Scalar S>
+inline constexpr S kFlat = S(0x1p-20);
+
 /// Two numbers that say how far along: the plain one for shapes near each other, the exact one for all.
 template <Scalar S>
 struct LocalWay {
@@ -109,7 +113,7 @@ FaceAxis<S> searchFaces(const PlacedShape<S>& a, const PlacedShape<S>& b, S reac
   const FarthestFace<Way> faceOfA(a, ofA, ofB, b.count), faceOfB(b, ofB, ofA, a.count);
   // Of two faces that lie flat on each other it is A's, whatever rounding makes of it: the answer stays the
   // same from step to step, and a segment is touched in its face, not at its end.
-  const bool onB = faceOfB.separation > faceOfA.separation + Way::length(S(0x1p-20));
+  const bool onB = faceOfB.separation > faceOfA.separation + Way::length(kFlat<S>);
   return onB ? separationAt<Way>(b, faceOfB.face, a, true) : separationAt<Way>(a, faceOfA.face, b, false);
 }
 
@@ -124,7 +128,8 @@ FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, 
   return local ? searchFaces<LocalWay<S>>(a, b, reach, start) : searchFaces<ExactWay<S>>(a, b, reach, start);
 }
 
-/// Whether the nearest vertex lies above the inside of the face: then nothing of the shapes is nearer.
+/// Whether the nearest vertex lies above the inside of the face, or below it: then, apart, nothing of the
+/// shapes is nearer.
 template <Scalar S>
 bool facesVertex(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis) {
   const PlacedShape<S>& shape = axis.onB ? b : a;

@@ -351,6 +351,20 @@ TYPED_TEST(ArbiterTest, ImpulseAndEnergyAreNothingWhereNothingWasSolved) {
   EXPECT_EQ(visits, 1);
 }
 
+TYPED_TEST(ArbiterTest, ABodyAddedAfterTheThreadsWereMadeHasNone) {
+  using S = TypeParam;
+  this->twoDiscs(S(1), S(3), S(2), S(-2));
+  this->space_.step(kTick<S>);
+  int visits = 0;
+  const auto visit = [&](Arbiter<S>&) { ++visits; };
+  this->space_.eachArbiter(bodyOf(this->space_, this->a_), visit);
+  EXPECT_EQ(visits, 1);
+  std::vector<BodyId> added;
+  for (int i = 0; i < 20; ++i) added.push_back(this->space_.add(Body<S>(S(1), S(1))));
+  for (const BodyId id : added) this->space_.eachArbiter(id, visit);
+  EXPECT_EQ(visits, 1);
+}
+
 TYPED_TEST(ArbiterTest, APairThatNothingMovesIsUnsolvable) {
   using S = TypeParam;
   Pair<S> pair = this->pair_;

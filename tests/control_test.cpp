@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@ template <class S>
 class ControlTest : public ::testing::Test {
  protected:
   using Points = std::vector<Vector<S>>;
+  using Scalar = S;
 
   static Vector<S> at(int x, int y) { return {S(x), S(y)}; }
 
@@ -102,6 +104,28 @@ TYPED_TEST(ControlTest, HullOfALineHasTwoPointsAndOfOnePointOne) {
             (typename TestFixture::Points{at(0, 0), at(3, 3)}));
   EXPECT_EQ(TestFixture::hullOf({at(4, 5), at(4, 5), at(4, 5)}), (typename TestFixture::Points{at(4, 5)}));
   EXPECT_EQ(TestFixture::hullOf({at(4, 5)}), (typename TestFixture::Points{at(4, 5)}));
+}
+
+// The tolerance is a distance from an edge, not from the line that it lies in.
+TYPED_TEST(ControlTest, HullKeepsPointsBeyondTheEndOfALine) {
+  const auto at = [](int x, int y) { return TestFixture::at(x, y); };
+  const typename TestFixture::Points points = {at(0, 100), at(10, 0), at(5, 40), at(9, -30)};
+  EXPECT_THAT(TestFixture::hullOf(points, typename TestFixture::Scalar(4)), ::testing::Contains(at(9, -30)));
+}
+
+// Three points on an edge are all equally far from a line along it: only the outer two are corners.
+TYPED_TEST(ControlTest, HullLeavesOutPointsOnEdgesWhateverLineTheyAreFoundFrom) {
+  const auto at = [](int x, int y) { return TestFixture::at(x, y); };
+  const typename TestFixture::Points points = {at(7, 1),  at(-5, 0), at(-8, -3), at(-7, -6), at(7, 0),
+                                               at(4, -3), at(1, -6), at(1, -5),  at(-2, -8), at(-5, 6)};
+  TestFixture::expectHull(TestFixture::hullOf(points), points);
+  Random random(5);
+  for (int round = 0; round < 200; ++round) {
+    typename TestFixture::Points grid(static_cast<std::size_t>(random.between(8, 30)));
+    for (auto& v : grid) v = at(random.between(-3, 3), random.between(-3, 3));
+    grid.insert(grid.end(), {at(-4, 0), at(4, 0), at(0, 4), at(0, -4)});
+    TestFixture::expectHull(TestFixture::hullOf(grid), grid);
+  }
 }
 
 TYPED_TEST(ControlTest, HullOfScatteredPointsIsConvexAndHoldsThemAllInPlaceToo) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -53,11 +54,21 @@ TEST(ParseDecimalTest, ReadsEveryPartOfANumber) {
   EXPECT_EQ(parsedBits("-0.00e7"), std::uint64_t{1} << 63);
 }
 
+// A scene must not be readable in one scalar and refused in another.
+TEST(ParseDecimalTest, NeedsADigitOnOneSideOfThePointOnlyAsFixedDoes) {
+  for (const auto& [text, value] : {std::pair(".5", 0.5), std::pair("-.5", -0.5), std::pair("5.", 5.0),
+                                    std::pair("1.e2", 100.0), std::pair("+.25E1", 2.5)}) {
+    EXPECT_EQ(parsed(text), value);
+    Fixed number;
+    EXPECT_EQ(parseDecimal(std::string_view(text), number), DecimalStatus::ok) << text;
+    EXPECT_EQ(number, Fixed(value));
+  }
+}
+
 TEST(ParseDecimalTest, RefusesWhatIsNotANumber) {
-  for (const char* text :
-       {"+",    "-",        ".",     ".5",    "5.",    "-.5",   "e5", "1e",      "1e+",  "1e-",
-        "1.e5", "1..2",     "1.2.3", "--1",   "+-1",   " 1",    "1 ", "1,5",     "0x10", "inf",
-        "-inf", "Infinity", "nan",   "1e5.0", "1e5e5", "1_000", "1f", "\xd9\xa1"}) {
+  for (const char* text : {"+",    "-",        ".",   "-.",    ".e5",   "e5",    "1e",  "1e+",     "1e-",
+                           "1..2", "1.2.3",    "--1", "+-1",   " 1",    "1 ",    "1,5", "0x10",    "inf",
+                           "-inf", "Infinity", "nan", "1e5.0", "1e5e5", "1_000", "1f",  "\xd9\xa1"}) {
     EXPECT_EQ(status(text), DecimalStatus::notANumber) << text;
   }
   EXPECT_EQ(status(std::string("1\0", 2)), DecimalStatus::notANumber);

@@ -113,6 +113,22 @@ TYPED_TEST(GjkTest, EveryStartLeadsToTheSameDistance) {
   }
 }
 
+// Vertices of the start that are no corners of the difference would spoil the polygon that grows in it.
+TYPED_TEST(GjkTest, EveryStartMeasuresAnOverlapWithDustRight) {
+  using S = TypeParam;
+  const auto unit = [](int x, int y) { return Vector<S>(S(x) * S(0x1p-32), S(y) * S(0x1p-32)); };
+  const Placement<S> dust(
+      polyShape<S>(BodyId(), std::vector<Vector<S>>{unit(0, -1024), unit(242, 5), unit(-4, 290)}),
+      Transform<S>::rigid(unit(3, 5), S(1) / S(8)));
+  const Placement<S> box(boxShape<S>(BodyId(), S(16384), S(16384)), Transform<S>::rigid(Vector<S>(), S(2)));
+  const S cold = TestFixture::search(dust, box).distance;
+  EXPECT_NEAR(double(cold), -8192, 1e-4);
+  for (std::uint32_t start = 0; start < 3 * 4 * 3 * 4; ++start) {
+    const std::uint32_t id = start % 3 << 24 | start / 3 % 4 << 16 | start / 12 % 3 << 8 | start / 36;
+    EXPECT_EQ(TestFixture::search(dust, box, id).distance, cold) << id;
+  }
+}
+
 TYPED_TEST(GjkTest, KnowsTheVerticesThatAreNearest) {
   using S = TypeParam;
   const Shape<S> box = boxShape<S>(BodyId(), S(2), S(2));
@@ -155,6 +171,48 @@ TYPED_TEST(GjkTest, SegmentsInOneLineHaveTheDistanceOfTheirEnds) {
   EXPECT_EQ(found.vertexA, 1);
   EXPECT_EQ(found.vertexB, 0);
 }
+
+#ifndef SAMESTEP_FIXED_ONLY
+// The ends of an edge of the Minkowski difference are compared with the origin one by one: in a sum, an end
+// that almost coincides with it would be lost, and with it which way is out.
+TEST(GjkDoubleTest, CornersAnUlpApartAreSeparatedByTheirNormal) {
+  const std::vector<Vector<double>> dust = {{9.9800527133012628e-06, -1.4551915228366847e-07},
+                                            {1.0119052602911938e-05, 2.8172511603913219e-08},
+                                            {9.9800527086505776e-06, 2.8172507882118212e-08}};
+  const std::vector<Vector<double>> large = {{9.9800527095794678e-06, -1.4551915228366852e-07},
+                                             {1024.0000099674799, 0.0039060988929122686},
+                                             {1024.0000099677127, 1023.9999998314306}};
+  const Placement<double> a(polyShapeRaw<double>(BodyId(), dust), Transform<double>());
+  const Placement<double> b(polyShapeRaw<double>(BodyId(), large), Transform<double>());
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  const Vector<double> axis =
+      perp(Vector<double>((a->box.left - b->box.left) + (a->box.right - b->box.right),
+                          (a->box.bottom - b->box.bottom) + (a->box.top - b->box.top)));
+  const ClosestPoints<double> found = gjk<double>(pair, 0, axis, nullptr);
+  EXPECT_NEAR(found.distance, 0, 1e-12);
+  // All of the large one lies ahead of all of the small one.
+  EXPECT_GE(dot(pair.farthest(-found.normal).ab, found.normal), -1e-6);
+}
+
+// A vertex may seem to lie outside of an edge that is not its own: it must not be put in twice.
+TEST(GjkDoubleTest, EpaTakesNoVertexTwice) {
+  const double w = 5.5879354476928711e-09;
+  const std::vector<Vector<double>> blade = {{w, -8192}, {w, 8192}, {-w, 8192}, {-w, -8192}};
+  const std::vector<Vector<double>> points = {
+      {-2.3283064365386963e-10, 0}, {0, 0},
+      {0.1318359375, 0.1318359375}, {-0.1953125, -0.1337890625},
+      {0.0048828125, 0.1318359375}, {-9.8044984042644501e-07, 0.0048828125}};
+  const Vector<double> turn = forAngle(16384.000000011176);
+  const Placement<double> a(polyShapeRaw<double>(BodyId(), blade),
+                            Transform<double>::rigid({0, -26.24609375}, perp(turn)));
+  const Placement<double> b(polyShape<double>(BodyId(), points),
+                            Transform<double>::rigid({0, -26.24609375}, -turn));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  for (const std::uint32_t start : {0u, 0x00385822u, 0x00010200u, 0x03000102u, 0x02010300u}) {
+    EXPECT_NO_THROW(gjk<double>(pair, start, Vector<double>(), nullptr)) << start;
+  }
+}
+#endif
 
 // MIS section 13, SameVertices.
 TYPED_TEST(GjkTest, EpaOnAPolygonWithoutLengthIsAnInternalError) {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <samestep/shape.h>
+
+namespace samestep::fuzz {
+
+/// The vertices of two placed shapes relative to A's first: differences, as collide takes them.
+template <Scalar S>
+struct Cores {
+  int countA = 0, countB = 0;
+  Vector<S> a[kMaxPolyVertices], b[kMaxPolyVertices];
+  Vector<S> origin;  ///< A's first vertex in the world.
+  double size = 0;   ///< Of both cores and the way between them, m: what an error of a direction is worth.
+  double shortest = 1e300;  ///< Edge of either core, m.
+  double reach = 0;         ///< Of the farthest vertex from the world's origin, m.
+
+  Cores(const PlacedShape<S>& first, const PlacedShape<S>& second);
+};
+
+/// What trying every edge and vertex of two convex cores finds.
+struct BruteAnswer {
+  double distance = 0;       ///< Metres, negative where they overlap; a lower bound beyond the limit.
+  double bestFace = -1e300;  ///< Of all faces, how far it is from the other core.
+  double lead = 1e300;       ///< By how much that face beats all others.
+  bool corners = false;      ///< Apart, and two vertices are nearest.
+};
+
+/// Signs are exact in Fixed (products of 128 bits); only lengths are rounded, to double.
+/// @param limit  cores farther apart than this are of no interest
+template <Scalar S>
+BruteAnswer bruteDistance(const Cores<S>& cores, double limit);
+
+/// Metres by which a direction separates the cores; negative: by how much they overlap along it.
+template <Scalar S>
+double separationAlong(const Cores<S>& cores, const Vector<S>& normal);
+
+/// The sine of the angle between a direction and the edge of a core that is most across it, of the two at the
+/// vertex farthest along it; 0 also where that edge is dust. Near 0 the core is a needle that points there.
+template <Scalar S>
+double widthTowards(const Vector<S>* points, int count, const Vector<S>& direction);
+
+/// The least width of the cores' Minkowski difference along the normals of their faces, metres: of two
+/// parallel segments 0.
+template <Scalar S>
+double thickness(const Cores<S>& cores);
+
+/// The least width of the two cores that are polygons, metres: below some units rounding may have turned one
+/// inside out.
+template <Scalar S>
+double leastWidth(const Cores<S>& cores);
+
+/// How far a point, relative to the same origin, lies outside of a convex core.
+template <Scalar S>
+double distanceToCore(const Vector<S>* points, int count, const Vector<S>& p);
+
+/// Whether a distance is that of the cores to within a tolerance, decided in rational numbers.
+template <Scalar S>
+bool nearExactDistance(const Cores<S>& cores, double distance, double tolerance);
+
+}  // namespace samestep::fuzz

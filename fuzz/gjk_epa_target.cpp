@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// GJK and EPA alone: cores of any convex polygons, any start, any axis.
+#include "gjk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cases.h"
+#include "check.h"
+#include "distance.h"
+
+namespace samestep::fuzz {
+namespace {
+
+struct Case {
+  ShapePlan shapeA, shapeB;
+  PosePlan poseA, poseB;
+  Vector<Fixed> axis;
+  std::uint32_t start = 0;
+};
+Case current;
+
+void describe() {
+  print("A", current.shapeA, current.poseA);
+  print("B", current.shapeB, current.poseB);
+  std::fprintf(stderr, "axis (%.17g, %.17g), start %08x\n", static_cast<double>(current.axis.x),
+               static_cast<double>(current.axis.y), current.start);
+}
+
+/// Where the Minkowski difference is thinner than this part of its size, double makes no promise.
+constexpr double kThin = 0x1p-20;
+
+template <Scalar S>
+bool isVertexOf(const SupportShape<S>& shape, int vertex) {
+  return vertex >= -1 && vertex < shape.count;
+}
+
+template <Scalar S>
+void check(const Cores<S>& cores, const SupportPair<S>& pair, const ClosestPoints<S>& found,
+           const CollisionStats& stats) {
+  // What GJK answers with is one rounded direction times one difference.
+  // In double the edges of the difference are rounded, the short ones most.
+  const double turned = std::min(1.0, cores.reach * 0x1p-50 / cores.shortest);
+  const double bound = kIsFixed<S> ? 4 * 0x1p-32 + cores.size * 0x1p-30
+                                   : cores.size * (0x1p-46 + turned) + cores.reach * 0x1p-50;
+  // A search that reached its limit of iterations answers with the best edge so far.
+  const double gaveUp = stats.highEpaIterations > 0 ? cores.size * 0x1p-5 : 0;
+  const BruteAnswer brute = bruteDistance(cores, 1e300);
+  const double distance = static_cast<double>(found.distance);
+  expectNear(distance, brute.distance, bound + gaveUp, "the distance is that of brute force");
+  const double nx = static_cast<double>(found.normal.x), ny = static_cast<double>(found.normal.y);
+  expectNear(nx * nx + ny * ny, 1, kIsFixed<S> ? 0x1p-30 : 0x1p-50, "the normal is a unit vector");
+  expectNear(separationAlong(cores, found.normal), distance, bound + gaveUp,
+             "the normal separates by the distance");
+  expect(isVertexOf(pair.a, found.vertexA) && isVertexOf(pair.b, found.vertexB), "vertices are vertices");
+  if (found.vertexA >= 0 && found.vertexB >= 0 && distance > bound) {
+    const Vector<S> between = pair.vertex(found.vertexA, found.vertexB).ab;
+    expectNear(std::hypot(static_cast<double>(between.x), static_cast<double>(between.y)), distance, bound,
+               "the vertices named are nearest");
+  }
+}
+
+template <Scalar S>
+struct Search {
+  Placed<S> a, b;
+  bool make() {
+    const auto shapeA = build<S>(current.shapeA), shapeB = build<S>(current.shapeB);
+    if (!shapeA || !shapeB) return false;
+    a.prepare(*shapeA);
+    b.prepare(*shapeB);
+    return true;
+  }
+};
+
+/// @return what the search finds from the start of the case
+template <Scalar S>
+ClosestPoints<S> searchFrom(const SupportPair<S>& pair, std::uint32_t start, CollisionStats& stats) {
+  stats = {};
+  return gjk(pair, start, as<S>(current.axis), &stats);
+}
+
+template <Scalar S>
+void runWith(Search<S>& search) {
+  const PlacedShape<S>&a = search.a.at(transformOf<S>(current.poseA)),
+        &b = search.b.at(transformOf<S>(current.poseB));
+  const Cores<S> cores(a, b);
+  const SupportPair<S> pair{SupportShape<S>(a), SupportShape<S>(b)};
+  CollisionStats stats;
+  if (!kIsFixed<S> && thickness(cores) < cores.reach * kThin) {
+    // Only exact products decide right in a difference that is as thin as rounding: here only that it ends.
+    searchFrom<S>(pair, current.start, stats);
+    return;
+  }
+  const ClosestPoints<S> cold = searchFrom<S>(pair, 0, stats);
+  check(cores, pair, cold, stats);
+  for (const std::uint32_t start : {current.start, cold.id}) {
+    const ClosestPoints<S> found = searchFrom<S>(pair, start, stats);
+    check(cores, pair, found, stats);
+  }
+}
+
+void run(Input& input) {
+  const std::uint64_t head = input.word();
+  current = {};
+  current.shapeA = readShape(input);
+  current.shapeB = (head & 1) != 0 ? current.shapeA : readShape(input);
+  current.poseA = readPose(input, nullptr);
+  current.poseB = readPose(input, &current.poseA);
+  current.start = static_cast<std::uint32_t>(head >> 32);
+  // A start that names vertices: garbage mostly does not.
+  if ((head & 2) != 0) current.start &= 0x0f0f0f0f;
+  if ((head & 4) != 0) current.axis = {input.number(), input.number()};
+
+  static Search<Fixed> fixedSearch;
+  if (!fixedSearch.make()) return;
+  runWith(fixedSearch);
+
+  static Search<CheckedFixed> checkedSearch;
+  expect(checkedSearch.make(), "CheckedFixed takes what Fixed takes");
+  CollisionStats stats;
+  const PlacedShape<CheckedFixed>&a = checkedSearch.a.at(transformOf<CheckedFixed>(current.poseA)),
+        &b = checkedSearch.b.at(transformOf<CheckedFixed>(current.poseB));
+  searchFrom<CheckedFixed>({SupportShape<CheckedFixed>(a), SupportShape<CheckedFixed>(b)}, current.start,
+                           stats);
+
+  static Search<double> doubleSearch;
+  if (doubleSearch.make()) runWith(doubleSearch);
+}
+
+}  // namespace
+}  // namespace samestep::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  samestep::fuzz::describer() = samestep::fuzz::describe;
+  samestep::fuzz::Input input(data, size);
+  samestep::fuzz::guarded([&] { samestep::fuzz::run(input); });
+  return 0;
+}

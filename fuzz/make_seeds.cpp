@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Writes the first inputs of the targets that read formats: worlds and recordings of the smaller scenes after
+// some ticks, in both number types, into DIR/snapshot and DIR/recording.
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <samestep/named_handlers.h>
+#include <samestep/recorder.h>
+#include <samestep/scene.h>
+#include <samestep/space_codec.h>
+
+namespace {
+
+using namespace samestep;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr const char* kScenes[] = {"example", "cradle", "filters", "handlers",  "incline",
+                                   "stack",   "bounce", "scales",  "soft-stack"};
+constexpr std::uint32_t kMostBodies = 12;
+
+void write(const std::filesystem::path& path, const Bytes& bytes) {
+  std::filesystem::create_directories(path.parent_path());
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+template <Scalar S>
+void writeSeeds(const std::filesystem::path& folder, const std::string& name, std::uint8_t kind, int ticks) {
+  const SceneSource source = SceneSource::find(name);
+  Scene<S> scene(source);
+  if (scene.space().bodyCount() > kMostBodies) return;
+  const std::string file = name + "-" + std::to_string(ticks) + (kind != 0 ? "-double" : "-fixed");
+  for (int i = 0; i < ticks; ++i) scene.step();
+
+  Bytes world{kind};
+  encodeWorld(scene.space().state(), world);
+  write(folder / "snapshot" / file, world);
+
+  Bytes recording;
+  Recorder<S> recorder(scene.space(), scene.timeStep(), recording, namedHandlerWiring<S>());
+  for (int i = 0; i < 6; ++i) {
+    while (const Command<S>* command = scene.nextCommand()) recorder.apply(*command);
+    if (i == 2) {
+      Spawn<S> spawn{Body<S>(S(1), S(1)), {}};
+      const BodyId body = recorder.apply(spawn);
+      recorder.apply(ApplyImpulse<S>{body, {S(1), S(2)}, {S(0), S(1)}});
+      recorder.apply(SetVelocity<S>{body, {S(1), S(0)}});
+      recorder.apply(SetAngularVelocity<S>{body, S(1)});
+      recorder.apply(SetPosition<S>{body, {S(50), S(50)}});
+      recorder.apply(SetAngle<S>{body, S(2)});
+      recorder.apply(ApplyForce<S>{body, {S(3), S(0)}, {}});
+      recorder.apply(Remove{body});
+    }
+    recorder.step();
+  }
+  recorder.finish();
+  write(folder / "recording" / file, recording);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: samestep_fuzz_seeds DIR\n", stderr);
+    return 2;
+  }
+  for (const char* name : kScenes) {
+    for (const int ticks : {0, 30}) {
+      writeSeeds<Fixed>(argv[1], name, 0, ticks);
+      writeSeeds<double>(argv[1], name, 1, ticks);
+    }
+  }
+  return 0;
+}

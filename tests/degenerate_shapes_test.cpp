@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// The collision routines on the shapes and poses of the degenerate library, and what fuzzing found in them.
+#include "support/degenerate_shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include <samestep/circle_shape.h>
+#include <samestep/collision.h>
+#include <samestep/poly_shape.h>
+
+#include "support/scalars.h"
+
+namespace samestep {
+namespace {
+
+template <class S>
+class DegenerateShapesTest : public ::testing::Test {
+ protected:
+  static constexpr bool kIsDouble = !kIsFixed<S>;
+
+  static CollisionInfo<S> touch(const Shape<S>& a, const Transform<S>& poseA, const Shape<S>& b,
+                                const Transform<S>& poseB, S margin = S(0)) {
+    const Placement<S> placedA(a, poseA), placedB(b, poseB);
+    return collide(*placedA, *placedB, 0, nullptr, margin);
+  }
+  static void expectUnitNormal(const CollisionInfo<S>& info) {
+    EXPECT_LE(abs(lengthSq(info.normal) - S(1)), S(0x1p-29));
+  }
+  static S depth(const CollisionInfo<S>& info, int i) {
+    return dot(info.points[i].pointB - info.points[i].pointA, info.normal);
+  }
+  static Shape<S> hull(std::initializer_list<RawPoint> points, S radius = S(0)) {
+    std::vector<Vector<S>> vertices;
+    for (const RawPoint& p : points) vertices.push_back(fromUnits<S>(p));
+    return polyShape<S>(BodyId(), vertices, Transform<S>(), radius);
+  }
+};
+TYPED_TEST_SUITE(DegenerateShapesTest, AllScalarsAndChecked);
+
+TYPED_TEST(DegenerateShapesTest, EachShapeIsAccepted) {
+  using S = TypeParam;
+  for (const NastyShape& shape : nastyShapes()) {
+    EXPECT_EQ(makeNasty<S>(shape).vertices().size() >= 1, true) << shape.name;
+    EXPECT_EQ(findNastyShape(shape.name), &shape - nastyShapes().data());
+  }
+  EXPECT_EQ(findNastyShape("nothing of that name"), -1);
+}
+
+TYPED_TEST(DegenerateShapesTest, EachPairTouchesOrNotAsItSaysInBothOrders) {
+  using S = TypeParam;
+  for (const NastyPair& pair : nastyPairs()) {
+    const Shape<S> a = makeNasty<S>(nastyShapes()[static_cast<std::size_t>(pair.shapeA)]);
+    const Shape<S> b = makeNasty<S>(nastyShapes()[static_cast<std::size_t>(pair.shapeB)]);
+    const S margin = pair.touches ? S(0x1p-20) : S(0);
+    const CollisionInfo<S> info = TestFixture::touch(a, poseAOf<S>(pair), b, poseBOf<S>(pair), margin);
+    const CollisionInfo<S> turned = TestFixture::touch(b, poseBOf<S>(pair), a, poseAOf<S>(pair), margin);
+    EXPECT_EQ(info.count > 0, pair.touches) << pair.name;
+    EXPECT_EQ(turned.count > 0, pair.touches) << pair.name;
+    if (info.count > 0) TestFixture::expectUnitNormal(info);
+    if (turned.count > 0) TestFixture::expectUnitNormal(turned);
+  }
+}
+
+// The nearest edge is found by rounded distances: of two nearly parallel ones it may be the wrong one, and
+// its end is then far from the circle.
+TYPED_TEST(DegenerateShapesTest, CircleAtTheTipOfANeedleTouchesIt) {
+  using S = TypeParam;
+  const Shape<S> needle =
+      TestFixture::hull({{0, 506806140928}, {32, 506806141003}, {107, -506806141003}, {-107, 4398046511017}});
+  const Shape<S> circle = circleShape<S>(BodyId(), S(0));
+  const Transform<S> atTip = Transform<S>::translation(fromUnits<S>({-107, 4398046511017}));
+  EXPECT_EQ(TestFixture::touch(needle, Transform<S>(), circle, atTip, S(1)).count, 1);
+}
+
+// Before a thin corner all edges are within rounding of the point, however far off it is.
+TYPED_TEST(DegenerateShapesTest, CircleFarBeforeTheTipOfABladeDoesNotTouchIt) {
+  using S = TypeParam;
+  const Shape<S> blade = makeNasty<S>(nastyShapes()[static_cast<std::size_t>(findNastyShape("blade"))]);
+  const Shape<S> circle = circleShape<S>(BodyId(), S(1));
+  for (const int apart : {2, 20, 200}) {
+    const Transform<S> before = Transform<S>::translation({S(64 + apart), S(0)});
+    EXPECT_EQ(TestFixture::touch(blade, Transform<S>(), circle, before).count, 0) << apart;
+  }
+}
+
+TYPED_TEST(DegenerateShapesTest, BladesFarBeforeEachOthersTipsDoNotTouch) {
+  using S = TypeParam;
+  const Shape<S> blade = makeNasty<S>(nastyShapes()[static_cast<std::size_t>(findNastyShape("blade"))]);
+  for (const int units : {0, 1, 2}) {
+    const Transform<S> before = Transform<S>::translation({S(140), fromUnits<S>(units)});
+    EXPECT_EQ(TestFixture::touch(blade, Transform<S>(), blade, before).count, 0) << units;
+  }
+}
+
+}  // namespace
+}  // namespace samestep
