@@ -116,7 +116,7 @@ RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const W
   const RecordingInfo info = readInfo(reader);
   if (info.scalar != ScalarTraits<S>::kKind) failFormat(16, "a recording of another scalar");
   if (info.revision != kSimulationRevision) {
-    failFormat(12, "recorded by another revision of the simulation, whose results differ");
+    failRevision(12, info.revision, kSimulationRevision);
   }
   CanonicalReader read(reader);
   read.get(timeStep_);

@@ -595,6 +595,8 @@ template <Scalar S>
 void Space<S>::save(SavedSpace<S>& into) const {
   requireUnlocked();
   into.state_ = state_;
+  if (into.cache_ == nullptr) into.cache_ = new SpaceCache<S>;
+  into.cache_->copyFrom(*impl_);
 }
 
 template <Scalar S>
@@ -607,24 +609,42 @@ SavedSpace<S> Space<S>::save() const {
 template <Scalar S>
 void Space<S>::restore(const SavedSpace<S>& saved) {
   adopt(saved.state_);
+  if (saved.cache_ != nullptr) impl_->copyFrom(*saved.cache_);
 }
 
 template <Scalar S>
 void Space<S>::adopt(const WorldState<S>& state) {
+  checkAdoptable(state);
+  state_ = state;
+  takeOver();
+}
+
+template <Scalar S>
+void Space<S>::adopt(WorldState<S>&& state) {
+  checkAdoptable(state);
+  state_ = std::move(state);
+  takeOver();
+}
+
+template <Scalar S>
+void Space<S>::checkAdoptable(const WorldState<S>& state) const {
   requireUnlocked();
   require<Fault::ForeignWorld>(state.bodies.contains(state.staticBody), "Nothing was saved there.");
   for (const HandlerBinding& binding : state.handlers) {
     require<Fault::MissingCallback>(Impl::find(impl_->handlers, binding.number) != nullptr);
   }
   state.bodies.each([&](BodyId, const Body<S>& body) { requireCallbacks(body); });
+}
 
-  state_ = state;
+/// Makes a state that came from elsewhere this Space's own.
+template <Scalar S>
+void Space<S>::takeOver() {
   state_.bodies.each([&](BodyId id, Body<S>& body) {
     body.id_ = id;
     body.owner_ = impl_->serial;
   });
-  impl_->shapesHashKnown = false;
   state_.shapes.each([&](ShapeId id, Shape<S>& shape) { shape.attach(id, impl_->serial); });
+  impl_->shapesHashKnown = false;
   rangeEvents_.clear();
   dropCache();
 }

@@ -4,6 +4,8 @@
 #include <samestep/verify.h>
 #include <samestep/version.h>
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "support/recordings.h"
@@ -92,6 +94,22 @@ TYPED_TEST(RecordingTest, OtherVersionsRevisionsAndScalarsAreRefusedAtTheirPlace
     altered[static_cast<std::size_t>(offset)] ^= 3;
     mendChecksum(altered);
     EXPECT_EQ(offsetOfComplaint<TypeParam>(altered), offset);
+  }
+}
+
+TYPED_TEST(RecordingTest, VerifyRefusesAnotherRevisionAndNamesBoth) {
+  Bytes altered = recordSmallMatch<TypeParam>(1);
+  altered[12] = kSimulationRevision + 41;
+  mendChecksum(altered);
+
+  try {
+    verify<TypeParam>(altered, namedHandlerWiring<TypeParam>());
+    ADD_FAILURE() << "another revision was verified";
+  } catch (const RevisionError& error) {
+    EXPECT_EQ(error.offset(), 12u);
+    const std::string text = error.what();
+    EXPECT_NE(text.find(std::to_string(kSimulationRevision + 41)), std::string::npos) << text;
+    EXPECT_EQ(error.own(), kSimulationRevision);
   }
 }
 

@@ -143,6 +143,22 @@ class FormatError : public MalformedBytes {
   std::uint64_t offset_;
 };
 
+/// Bytes of another revision of the simulation, whose results differ. The text names both.
+class RevisionError : public FormatError {
+ public:
+  RevisionError(std::uint64_t offset, std::uint32_t found, std::uint32_t own);
+  const char* what() const noexcept override { return text_; }
+  /// Of the build that made the bytes.
+  std::uint32_t found() const { return found_; }
+  /// Of this build.
+  std::uint32_t own() const { return own_; }
+
+ private:
+  std::uint32_t found_;
+  std::uint32_t own_;
+  char text_[112];
+};
+
 [[noreturn]] void failWithoutExceptions(Fault fault, const char* text);
 
 /// Throws the exception of a fault, with the MIS's sentence or a more specific one that lives for ever. In a
@@ -178,6 +194,9 @@ template <Fault F>
   failWithoutExceptions(Fault::MalformedBytes, reason);
 #endif
 }
+
+/// Throws a RevisionError, as fail does.
+[[noreturn]] void failRevision(std::uint64_t offset, std::uint32_t found, std::uint32_t own);
 
 /// Runs an action on bytes from outside: what the engine refuses is the fault of those at `offset`, but not a
 /// missing callback.

@@ -158,17 +158,31 @@ struct WorldState {
   std::vector<HandlerBinding> handlers;
 };
 
-/// A world kept in memory, by Space::save. Reusing one makes saving free of allocation.
+template <Scalar S>
+struct SpaceCache;
+
+/// A world kept in memory, by Space::save, with what its Space had computed from it. Reusing one makes saving
+/// free of allocation.
 template <Scalar S>
 class SavedSpace {
  public:
+  SavedSpace();
+  SavedSpace(const SavedSpace& other);
+  SavedSpace(SavedSpace&& other) noexcept;
+  SavedSpace& operator=(const SavedSpace& other);
+  SavedSpace& operator=(SavedSpace&& other) noexcept;
+  ~SavedSpace();
+
   /// The step it was saved after.
   std::uint64_t stamp() const { return state_.stamp; }
   const WorldState<S>& state() const { return state_; }
+  /// How much memory it copies, bytes.
+  std::uint64_t bytes() const;
 
  private:
   friend class Space<S>;
   WorldState<S> state_;
+  SpaceCache<S>* cache_;  ///< Null only after a move.
 };
 
 /// A point query's answer.
@@ -510,6 +524,7 @@ class Space {
   /// Brings in a whole state, as save does; the caller answers for it being one that a Space can have.
   /// @throws SpaceLocked, ForeignWorld, MissingCallback
   void adopt(const WorldState<S>& state);
+  void adopt(WorldState<S>&& state);
   /// Forgets everything that can be computed again. Changes no result.
   /// @throws SpaceLocked
   void dropCache();
@@ -610,6 +625,8 @@ class Space {
   void collectFound(Collect&& collect);
   MassProperties<S> massOfShapes(BodyId id, ShapeId replaced, const Shape<S>* by) const;
   void bind(const HandlerBinding& binding);
+  void checkAdoptable(const WorldState<S>& state) const;
+  void takeOver();
   void checkShape(const Shape<S>& shape, const Body<S>& body) const;
 
   WorldState<S> state_;
@@ -621,9 +638,12 @@ class Space {
 };
 
 #ifndef SAMESTEP_FIXED_ONLY
+extern template class SavedSpace<double>;
 extern template class Space<double>;
 #endif
+extern template class SavedSpace<Fixed>;
 extern template class Space<Fixed>;
+extern template class SavedSpace<CheckedFixed>;
 extern template class Space<CheckedFixed>;
 
 }  // namespace samestep
