@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Worlds to bytes and, with everything checked, back.
+#include <samestep/environment.h>
 #include <samestep/space_codec.h>
 
 #include <limits>
@@ -252,6 +253,8 @@ void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes) {
 template <Scalar S>
 WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset,
                           const WorldLimits& limits) {
+  // Rotations and inverse masses follow from what is read.
+  requireSoundArithmetic<S>();
   ByteReader reader(bytes, offset);
   WorldState<S> world = WorldReader<S>(reader, limits).world();
   offset = reader.offset();

@@ -450,7 +450,8 @@ class Space {
 
   /// One step of dt seconds, in [0, 1]; 0 does nothing.
   /// @throws SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
-  ///         MissingCallback for a number without function
+  ///         MissingCallback for a number without function; UnsoundArithmetic for double in another mode of
+  ///         the processor
   /// MIS: spaceStep
   void step(S dt);
 

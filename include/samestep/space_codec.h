@@ -29,7 +29,7 @@ void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes);
 /// Reads a world from `offset` on and moves it past. Whatever the bytes are, the world is one a Space can
 /// have, fit for Space::adopt, or there is none; memory is taken for no more objects than the limits allow
 /// and the bytes left could tell of.
-/// @throws FormatError
+/// @throws FormatError, UnsoundArithmetic
 template <Scalar S>
 WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset,
                           const WorldLimits& limits = {});
