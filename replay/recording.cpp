@@ -73,6 +73,7 @@ class CommandReader {
   Command<S> spawn() {
     Command<S> command(std::in_place_type<Spawn<S>>);
     auto& made = std::get<Spawn<S>>(command);
+    read_.get(made.id);
     std::uint64_t at = bytes_.offset();
     read_.get(made.body);
     made.body.derive();
@@ -84,7 +85,8 @@ class CommandReader {
       at = bytes_.offset();
       Shape<S>& shape = made.shapes.emplace_back();
       read_.get(shape);
-      if (shape.id().valid() || shape.body().valid()) failFormat(at, "a new shape has an id");
+      if (shape.body().valid()) failFormat(at, "a new shape has a body");
+      if (!made.id.valid() && shape.id().valid()) failFormat(at, "a new shape has an id");
       if (!shape.wellFormed()) failFormat(at, "a shape is malformed");
     }
     return command;

@@ -123,8 +123,6 @@ void writeSlots(Records& write, const Map& map) {
     write.put(map.generationAt(i));
     if (map.aliveAt(i)) write.put(map.valueAt(i));
   }
-  write.put(static_cast<std::uint32_t>(map.freeList().size()));
-  for (const std::uint32_t index : map.freeList()) write.put(index);
 }
 
 template <class Records, class List>

@@ -108,6 +108,8 @@ const char* message(Fault fault) {
       return "The saved state belongs to another kind of world.";
     case Fault::MalformedBytes:
       return "These bytes are not what they should be.";
+    case Fault::IllegalId:
+      return "A given id must have an odd generation, higher than any its slot has had.";
     case Fault::UnsoundArithmetic:
       return "The processor is in a mode in which double gives other results.";
   }

@@ -85,8 +85,7 @@ SavedSpace<S>::~SavedSpace() {
 template <Scalar S>
 std::uint64_t SavedSpace<S>::bytes() const {
   const auto ofSlots = [](const auto& map) {
-    return map.values().size() * (sizeof(map.values()[0]) + sizeof(std::uint32_t)) +
-           map.freeList().size() * sizeof(std::uint32_t);
+    return map.values().size() * (sizeof(map.values()[0]) + sizeof(std::uint32_t));
   };
   return ofSlots(state_.bodies) + ofSlots(state_.shapes) + state_.pairs.size() * sizeof(Pair<S>) +
          state_.handlers.size() * sizeof(HandlerBinding) + sizeof state_ +

@@ -179,14 +179,8 @@ class WorldReader {
       id.generation = generations[i];
       if (const char* flaw = flawIn(id, values[i])) failFormat(at, flaw);
     }
-    const std::uint64_t freeStart = bytes_.offset();
-    const auto freeCount = read_.next<std::uint32_t>();
-    if (freeCount > count) failFormat(freeStart, "more free slots than slots");
-    std::vector<std::uint32_t> freeList;
-    for (std::uint32_t i = 0; i < freeCount; ++i) freeList.push_back(read_.next<std::uint32_t>());
-    if (!map.restore(std::move(values), std::move(generations), std::move(freeList))) {
-      failFormat(freeStart, "the free slots are not those of the list");
-    }
+    const bool good = map.restore(std::move(values), std::move(generations));
+    if (!good) failFormat(start, "a generation is too high");
   }
 
   template <class T, class Flaw>
@@ -226,8 +220,6 @@ std::uint64_t encodeWorld(const WorldState<S>& world, std::span<std::uint8_t> in
         records.put(map.generationAt(i));
       }
     }
-    plain.put(static_cast<std::uint32_t>(map.freeList().size()));
-    for (const std::uint32_t index : map.freeList()) plain.put(index);
   };
   const auto list = [&](const auto& items) {
     plain.put(static_cast<std::uint64_t>(items.size()));

@@ -388,31 +388,22 @@ TEST(SnapshotOfDoubleTest, NoNumberMayBeNaN) {
 }
 #endif
 
-TYPED_TEST(SnapshotTest, TheFreeSlotsMustBeThoseThatAreFree) {
+TYPED_TEST(SnapshotTest, AGenerationThatNoSlotReachesIsRefused) {
   using S = TypeParam;
   Space<S> space;
-  std::vector<BodyId> ids;
-  for (int i = 0; i < 8; ++i) ids.push_back(space.add(Body<S>(S(1), S(1))));
-  for (const std::size_t gone : {6u, 2u, 4u}) space.remove(ids[gone]);
-  const Bytes bytes = snapshotOf(space);
-  // Slot 0 is the static body's.
-  const Bytes list = {3, 0, 0, 0, 7, 0, 0, 0, 3, 0, 0, 0, 5, 0, 0, 0};
-  const auto place = std::search(bytes.begin(), bytes.end(), list.begin(), list.end());
+  const std::uint32_t last = SlotMap<Body<S>, BodyId>::kRetired - 1;
+  space.add(Body<S>(S(1), S(1)), {1, last});
+  space.remove(BodyId{1, last});
+  Bytes bytes = snapshotOf(space);
+  const Bytes retired = {0xfe, 0xff, 0xff, 0xff};
+  const auto place = std::search(bytes.begin(), bytes.end(), retired.begin(), retired.end());
   ASSERT_NE(place, bytes.end());
-  const std::int64_t at = place - bytes.begin();
-  const auto complaintWith = [&](std::size_t entry, std::uint8_t value) {
-    Bytes altered = bytes;
-    altered[static_cast<std::size_t>(at) + 4 * entry] = value;
-    mendChecksum(altered);
-    return this->offsetOfComplaint(altered);
-  };
+  EXPECT_EQ(this->offsetOfComplaint(bytes), -1);
 
-  EXPECT_EQ(complaintWith(1, 7), -1);
-  EXPECT_EQ(complaintWith(1, 3), at) << "twice the same: a cycle";
-  EXPECT_EQ(complaintWith(1, 1), at) << "in use";
-  EXPECT_EQ(complaintWith(1, 9), at) << "past the end";
-  EXPECT_EQ(complaintWith(0, 10), at) << "more than there are";
-  EXPECT_GE(complaintWith(0, 2), at) << "one left out";
+  *place = 0xff;
+  mendChecksum(bytes);
+
+  EXPECT_GE(this->offsetOfComplaint(bytes), static_cast<std::int64_t>(kWorldAt));
 }
 
 TYPED_TEST(SnapshotTest, LimitsOfTheCallerHold) {

@@ -58,6 +58,7 @@ enum class Fault : std::uint8_t {
   MissingCallback,  ///< A callback number without a registered function.
   ForeignWorld,     ///< A saved state of another kind of world.
   MalformedBytes,   ///< Bytes from outside that are not what they should be; see FormatError.
+  IllegalId,  ///< An id that the caller gives to a new object and that its slot cannot have any more.
   UnsoundArithmetic,  ///< The processor is in a mode in which double gives other results.
 };
 
@@ -132,6 +133,7 @@ using BodyHasShapes = FaultError<Fault::BodyHasShapes>;
 using MissingCallback = FaultError<Fault::MissingCallback>;
 using ForeignWorld = FaultError<Fault::ForeignWorld>;
 using MalformedBytes = FaultError<Fault::MalformedBytes>;
+using IllegalId = FaultError<Fault::IllegalId>;
 using UnsoundArithmetic = FaultError<Fault::UnsoundArithmetic>;
 
 /// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.

@@ -294,10 +294,20 @@ class Space {
   /// @throws DuplicateBody, AttachedBody, SpaceLocked; IllegalBody outside the world extent
   /// MIS: spaceAddBody
   BodyId add(const Body<S>& body);
+  /// The same under an id of the caller's choice. Worlds whose objects all have given ids are the same, bit
+  /// by bit, whatever the order in which objects came and went; see docs/determinism.md.
+  /// @param id  its index below 2^16, better near 0: a world takes room for all indices up to its highest;
+  /// its
+  ///            generation odd and higher than any its slot has had, 1 for the first
+  /// @throws as add; IndexOutOfBounds, IllegalId
+  BodyId add(const Body<S>& body, BodyId id);
   /// Takes in a copy, on the body the shape names; a shape with mass adds it to a dynamic body.
   /// @throws DuplicateShape, AttachedShape, BodyNotFound, IllegalBody, SizeOutOfRange, SpaceLocked
   /// MIS: spaceAddShape, bodyAddShape
   ShapeId add(const Shape<S>& shape);
+  /// The same under an id of the caller's choice, as for bodies.
+  /// @throws as add; IndexOutOfBounds, IllegalId
+  ShapeId add(const Shape<S>& shape, ShapeId id);
   /// @throws BodyNotFound, MainStaticBody, BodyHasShapes, SpaceLocked
   /// MIS: spaceRemoveBody
   void remove(BodyId id);
@@ -624,7 +634,10 @@ class Space {
   void requireCallbacks(const Body<S>& body) const;
   template <class Collect>
   void collectFound(Collect&& collect);
-  MassProperties<S> massOfShapes(BodyId id, ShapeId replaced, const Shape<S>* by) const;
+  MassProperties<S> massOfShapes(BodyId id, std::uint32_t replaced, const Shape<S>* by) const;
+  void checkNew(const Body<S>& body) const;
+  void attach(BodyId id);
+  void insert(const Shape<S>& shape, ShapeId id);
   void bind(const HandlerBinding& binding);
   void checkAdoptable(const WorldState<S>& state) const;
   void takeOver();
