@@ -366,7 +366,7 @@ MassProperties<S> Space<S>::massOfShapes(BodyId id, std::uint32_t replaced, cons
 
 template <Scalar S>
 ShapeId Space<S>::add(const Shape<S>& shape) {
-  const ShapeId id = state_.shapes.findNextId();
+  const ShapeId id = state_.shapes.nextId();
   insert(shape, id);
   return id;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -10,6 +11,49 @@
 #include <samestep/id.h>
 
 namespace samestep {
+
+/// Which of some slots are free, as bits, and which words of those have any: the lowest is found in a few
+/// operations.
+class FreeSlots {
+ public:
+  /// As many, none of them free.
+  void reset(std::uint32_t slots) {
+    words_.assign(wordsFor(slots), 0);
+    summary_.assign(wordsFor(wordsFor(slots)), 0);
+  }
+  /// New slots are not free.
+  void grow(std::uint32_t slots) {
+    words_.resize(wordsFor(slots), 0);
+    summary_.resize(wordsFor(wordsFor(slots)), 0);
+  }
+  void add(std::uint32_t slot) {
+    words_[slot / 64] |= bit(slot);
+    summary_[slot / 4096] |= bit(slot / 64);
+  }
+  void remove(std::uint32_t slot) {
+    words_[slot / 64] &= ~bit(slot);
+    if (words_[slot / 64] == 0) summary_[slot / 4096] &= ~bit(slot / 64);
+  }
+  /// `none` if there is none.
+  std::uint32_t lowest(std::uint32_t none) const {
+    for (std::uint32_t i = 0; i < summary_.size(); ++i) {
+      if (summary_[i] == 0) continue;
+      const std::uint32_t word = 64 * i + lowestBit(summary_[i]);
+      return 64 * word + lowestBit(words_[word]);
+    }
+    return none;
+  }
+
+ private:
+  static constexpr std::uint32_t wordsFor(std::uint32_t bits) { return bits / 64 + (bits % 64 != 0 ? 1 : 0); }
+  static constexpr std::uint64_t bit(std::uint32_t index) { return std::uint64_t{1} << (index % 64); }
+  static constexpr std::uint32_t lowestBit(std::uint64_t word) {
+    return static_cast<std::uint32_t>(std::countr_zero(word));
+  }
+
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t> summary_;
+};
 
 /// Values named by ids: a slot and its generation. Every id given out names one value for ever: after erase
 /// it names nothing, whatever later uses the slot.
@@ -34,27 +78,20 @@ class SlotMap {
 
   /// The id that the next insert will give.
   IdType nextId() const {
-    const std::uint32_t slot = lowestFree();
+    const std::uint32_t slot = free_.lowest(slots());
     return makeId(slot, slot == slots() ? 1 : generations_[slot] + 1);
-  }
-
-  /// The same, and the next search starts there.
-  IdType findNextId() {
-    lowestFree_ = lowestFree();
-    return nextId();
   }
 
   /// Stores the value in the lowest free slot, or a new one.
   /// @throws IllegalSize when no index is left
   IdType insert(T value) {
-    const IdType id = findNextId();
+    const IdType id = nextId();
     require<Fault::IllegalSize>(id.index < IdType::kNoIndex);
     store(id, std::move(value));
     return id;
   }
 
-  /// Stores the value under an id of the caller's choice. Slots up to it that were not there become free
-  /// ones.
+  /// Stores the value under an id of the caller's choice. New slots below it are free.
   /// @throws as checkGiven
   void insertAt(IdType id, T value) {
     checkGiven(id);
@@ -62,8 +99,7 @@ class SlotMap {
   }
   /// Refuses an id under which insertAt can store nothing.
   /// @throws IndexOutOfBounds if its index is not below kMaxGivenSlots; IllegalId unless its generation is
-  /// odd,
-  ///         below kRetired and higher than any its slot has had, and the slot free
+  ///         odd, below kRetired and higher than any its slot has had, and the slot free
   void checkGiven(IdType id) const {
     require<Fault::IndexOutOfBounds>(id.index < kMaxGivenSlots);
     const std::uint32_t before = id.index < slots() ? generations_[id.index] : 0;
@@ -73,22 +109,25 @@ class SlotMap {
 
   /// Stores the value under an id that nextId gave or that checkGiven has let pass.
   void store(IdType id, T value) {
-    if (id.index >= slots()) {
+    const std::uint32_t before = slots();
+    if (id.index >= before) {
       values_.resize(id.index + std::size_t{1});
       generations_.resize(id.index + std::size_t{1}, 0);
+      free_.grow(slots());
+      for (std::uint32_t slot = before; slot < id.index; ++slot) free_.add(slot);
+    } else {
+      free_.remove(id.index);
     }
     values_[id.index] = std::move(value);
     generations_[id.index] = id.generation;
     ++size_;
-    if (id.index == lowestFree_) ++lowestFree_;
   }
 
   /// Frees the slot. False, and nothing done, if the id names no value.
   bool erase(IdType id) {
     if (!contains(id)) return false;
     values_[id.index] = T();
-    ++generations_[id.index];
-    if (id.index < lowestFree_) lowestFree_ = id.index;
+    if (++generations_[id.index] != kRetired) free_.add(id.index);
     --size_;
     return true;
   }
@@ -139,7 +178,7 @@ class SlotMap {
   void clear() {
     values_.clear();
     generations_.clear();
-    lowestFree_ = 0;
+    free_.reset(0);
     size_ = 0;
   }
 
@@ -156,12 +195,14 @@ class SlotMap {
       if (generation > kRetired) return false;
       used += generation & 1;
     }
-    for (std::size_t slot = 0; slot < values.size(); ++slot) {
-      if ((generations[slot] & 1) == 0) values[slot] = T();
-    }
     values_ = std::move(values);
     generations_ = std::move(generations);
-    lowestFree_ = 0;
+    free_.reset(slots());
+    for (std::uint32_t slot = 0; slot < slots(); ++slot) {
+      if (aliveAt(slot)) continue;
+      values_[slot] = T();
+      if (generations_[slot] != kRetired) free_.add(slot);
+    }
     size_ = used;
     return true;
   }
@@ -178,15 +219,9 @@ class SlotMap {
     return id;
   }
 
-  bool freeAt(std::uint32_t slot) const { return !aliveAt(slot) && generations_[slot] != kRetired; }
-  std::uint32_t lowestFree() const {
-    std::uint32_t slot = lowestFree_;
-    while (slot < slots() && !freeAt(slot)) ++slot;
-    return slot;
-  }
   std::vector<T> values_;
   std::vector<std::uint32_t> generations_;
-  std::uint32_t lowestFree_ = 0;  ///< No slot below is free.
+  FreeSlots free_;  // not state: follows from the generations
   std::uint32_t size_ = 0;
 };
 
