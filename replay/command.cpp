@@ -1,16 +1,43 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/command.h>
 
+#include <algorithm>
+
 #include "require_ieee.h"
 
 namespace samestep {
 namespace {
 
 template <Scalar S>
-void addShapes(Space<S>& space, BodyId body, const std::vector<Shape<S>>& shapes) {
-  for (Shape<S> shape : shapes) {
-    shape.setBody(body);
-    space.add(shape);
+void addShapes(Space<S>& space, BodyId body, const std::vector<Shape<S>>& shapes, bool underTheirIds) {
+  for (const Shape<S>& shape : shapes) {
+    Shape<S> free = shape.detached();
+    free.setBody(body);
+    if (underTheirIds) {
+      space.add(free, shape.id());
+    } else {
+      space.add(free);
+    }
+  }
+}
+
+/// In the order in which they weigh together.
+template <Scalar S>
+std::vector<Shape<S>> byId(std::vector<Shape<S>> shapes) {
+  std::stable_sort(shapes.begin(), shapes.end(),
+                   [](const Shape<S>& a, const Shape<S>& b) { return a.id() < b.id(); });
+  return shapes;
+}
+
+/// Refuses ids that the world cannot give to what is spawned.
+template <Scalar S>
+void checkIds(const Space<S>& space, const Spawn<S>& spawn) {
+  space.state().bodies.checkGiven(spawn.id);
+  for (std::size_t i = 0; i < spawn.shapes.size(); ++i) {
+    space.state().shapes.checkGiven(spawn.shapes[i].id());
+    for (std::size_t j = 0; j < i; ++j) {
+      require<Fault::IllegalId>(spawn.shapes[i].id().index != spawn.shapes[j].id().index);
+    }
   }
 }
 
@@ -48,12 +75,14 @@ struct Applier {
   }
   BodyId operator()(const Spawn<S>& c) const {
     // Tried out elsewhere first: once an id is given out here, it cannot be taken back.
+    const bool given = c.id.valid();
     Space<S> trial;
     trial.setWorldExtent(space.worldExtent());
-    addShapes(trial, trial.add(c.body), c.shapes);
+    if (given) checkIds(space, c);
+    addShapes(trial, trial.add(c.body), given ? byId(c.shapes) : c.shapes, false);
 
-    const BodyId id = space.add(c.body);
-    addShapes(space, id, c.shapes);
+    const BodyId id = given ? space.add(c.body, c.id) : space.add(c.body);
+    addShapes(space, id, c.shapes, given);
     return id;
   }
   BodyId operator()(const Remove& c) const {

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include <samestep/error.h>
+#include <samestep/fingerprint.h>
 #include <samestep/space.h>
 #include <samestep/version.h>
 
@@ -10,11 +11,21 @@
 
 namespace {
 
+/// What two players compare before a match.
+std::string fingerprints() {
+  using namespace samestep;
+  std::string text = "fingerprint fixed " + program::hex(fingerprint<Fixed>());
+#ifndef SAMESTEP_FIXED_ONLY
+  text += "\nfingerprint double " + program::hex(fingerprint<double>());
+#endif
+  return text;
+}
+
 std::string versionText() {
   using namespace samestep;
   return "samestep " + std::string(version()) + "\nsimulation revision " +
          std::to_string(kSimulationRevision) + "\nscalars " + std::string(builtScalars()) + "\ncompiler " +
-         std::string(compiler());
+         std::string(compiler()) + "\n" + fingerprints();
 }
 
 }  // namespace

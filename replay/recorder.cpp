@@ -31,11 +31,13 @@ struct CommandWriter {
     write.put(plain);
   }
   void operator()(const Spawn<S>& spawn) const {
+    write.put(spawn.id);
     write.put(spawn.body);
     write.put(static_cast<std::uint32_t>(spawn.shapes.size()));
     for (const Shape<S>& shape : spawn.shapes) {
       Shape<S> free = shape.detached();
       free.setBody({});
+      if (spawn.id.valid()) free.attach(shape.id(), 0);
       write.put(free);
     }
   }

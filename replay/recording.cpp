@@ -73,6 +73,7 @@ class CommandReader {
   Command<S> spawn() {
     Command<S> command(std::in_place_type<Spawn<S>>);
     auto& made = std::get<Spawn<S>>(command);
+    read_.get(made.id);
     std::uint64_t at = bytes_.offset();
     read_.get(made.body);
     made.body.derive();
@@ -84,7 +85,8 @@ class CommandReader {
       at = bytes_.offset();
       Shape<S>& shape = made.shapes.emplace_back();
       read_.get(shape);
-      if (shape.id().valid() || shape.body().valid()) failFormat(at, "a new shape has an id");
+      if (shape.body().valid()) failFormat(at, "a new shape has a body");
+      if (!made.id.valid() && shape.id().valid()) failFormat(at, "a new shape has an id");
       if (!shape.wellFormed()) failFormat(at, "a shape is malformed");
     }
     return command;
@@ -116,7 +118,7 @@ RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const W
   const RecordingInfo info = readInfo(reader);
   if (info.scalar != ScalarTraits<S>::kKind) failFormat(16, "a recording of another scalar");
   if (info.revision != kSimulationRevision) {
-    failFormat(12, "recorded by another revision of the simulation, whose results differ");
+    failRevision(12, info.revision, kSimulationRevision);
   }
   CanonicalReader read(reader);
   read.get(timeStep_);

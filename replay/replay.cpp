@@ -5,6 +5,21 @@
 
 namespace samestep {
 
+namespace {
+
+/// Whether the ids that a spawn asks for are beyond the limits: room is taken up to the highest.
+template <Scalar S>
+bool asksForMore(const Command<S>& command, const WorldLimits& limits) {
+  const auto* spawn = std::get_if<Spawn<S>>(&command);
+  if (spawn == nullptr || !spawn->id.valid()) return false;
+  for (const Shape<S>& shape : spawn->shapes) {
+    if (shape.id().index >= limits.shapes) return true;
+  }
+  return spawn->id.index >= limits.bodies;
+}
+
+}  // namespace
+
 template <Scalar S>
 Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const WorldLimits& limits)
     : reader_(bytes, limits), wiring_(wiring), limits_(limits), recordedHash_(reader_.initialHash()) {
@@ -18,6 +33,9 @@ bool Replay<S>::applyCommands() {
   commands_.clear();
   RecordingItem item = reader_.next();
   for (; item == RecordingItem::command; item = reader_.next()) {
+    if (asksForMore(reader_.command(), limits_)) {
+      failFormat(reader_.offset(), "more bodies or shapes than allowed");
+    }
     // Recorded commands were accepted once.
     orFailFormat(reader_.offset(), [&] { apply(space_, reader_.command(), wiring_); });
     commands_.push_back(reader_.command());

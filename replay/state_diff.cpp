@@ -128,6 +128,9 @@ class Collector {
   /// The slots of two maps, side by side.
   template <class Map, class Name>
   void compareSlots(const Map& a, const Map& b, Name&& name) {
+    const auto generation = [](const Map& map, std::uint32_t i) {
+      return i < map.slots() ? std::to_string(map.generationAt(i)) : "none";
+    };
     for (std::uint32_t i = 0; i < std::max(a.slots(), b.slots()) && !full(); ++i) {
       const bool inA = i < a.slots() && a.aliveAt(i);
       const bool inB = i < b.slots() && b.aliveAt(i);
@@ -135,16 +138,13 @@ class Collector {
         exists(name(inA ? a : b, i), inA);
       } else if (inA) {
         if (a.generationAt(i) != b.generationAt(i)) {
-          add(name(a, i), "generation", std::to_string(a.generationAt(i)), std::to_string(b.generationAt(i)));
+          add(name(a, i), "generation", generation(a, i), generation(b, i));
         }
         compare(a.valueAt(i), b.valueAt(i), [&] { return name(a, i); });
+      } else if (generation(a, i) != generation(b, i)) {
+        add(name(i < a.slots() ? a : b, i), "generation", generation(a, i), generation(b, i));
       }
     }
-    const auto text = [](const Map& map) {
-      return std::to_string(map.nextId().index) + " (generation " + std::to_string(map.nextId().generation) +
-             ")";
-    };
-    if (text(a) != text(b)) add("free list", "next id", text(a), text(b));
   }
   /// Two sorted lists, side by side.
   template <class T, class Less, class Name>
@@ -210,7 +210,8 @@ std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldStat
   all.compareSlots(a.bodies, b.bodies,
                    [](const auto&, std::uint32_t i) { return "body " + std::to_string(i); });
   all.compareSlots(a.shapes, b.shapes, [](const auto& shapes, std::uint32_t i) {
-    return "shape " + std::to_string(i) + " of body " + std::to_string(shapes.valueAt(i).body().index);
+    const std::string shape = "shape " + std::to_string(i);
+    return shapes.aliveAt(i) ? shape + " of body " + std::to_string(shapes.valueAt(i).body().index) : shape;
   });
   all.compareLists(a.pairs, b.pairs, pairLess<S>, pairName<S>);
   all.compareLists(a.handlers, b.handlers, bindingLess, bindingName);

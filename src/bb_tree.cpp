@@ -160,6 +160,12 @@ void BBTree<S>::copyFrom(const BBTree& other) {
 }
 
 template <Scalar S>
+std::uint64_t BBTree<S>::bytes() const {
+  return tree_.bytes() + rooms_.size() * sizeof(BB<S>) + changes_.size() +
+         changed_.size() * sizeof(IndexKey) + pairs_.size() * sizeof(KeyPair);
+}
+
+template <Scalar S>
 void BBTree<S>::updatePairs() {
   BBTree* resting = staticTree();
   if (pairedWith_ != resting) {

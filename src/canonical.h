@@ -12,8 +12,30 @@
 
 namespace samestep {
 
+template <unsigned kSize>
+[[gnu::always_inline]] inline void storeLittleEndian(std::uint8_t* to, std::uint64_t value) {
+  if constexpr (std::endian::native == std::endian::little) {
+    // The same bytes; compilers do not always see that the loop is one store.
+    std::memcpy(to, &value, kSize);
+  } else {
+    for (unsigned i = 0; i < kSize; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
+  }
+}
+
+template <unsigned kSize>
+[[gnu::always_inline]] inline std::uint64_t loadLittleEndian(const std::uint8_t* from) {
+  std::uint64_t value = 0;
+  if constexpr (std::endian::native == std::endian::little) {
+    std::memcpy(&value, from, kSize);
+  } else {
+    for (unsigned i = 0; i < kSize; ++i) value |= std::uint64_t{from[i]} << (8 * i);
+  }
+  return value;
+}
+
 /// Turns fields into their canonical little-endian bytes. `Sink` has `std::uint8_t* reserve(unsigned size)`,
-/// which answers room for that many bytes, at most 8.
+/// which answers room for that many bytes, at most 8; or `store<size>(std::uint64_t value)`, which takes each
+/// plain number, as unsigned, with its size in bytes.
 template <class Sink>
 class CanonicalWriter {
  public:
@@ -74,12 +96,10 @@ class CanonicalWriter {
  private:
   template <unsigned kSize>
   void store(std::uint64_t value) {
-    std::uint8_t* to = sink_.reserve(kSize);
-    if constexpr (std::endian::native == std::endian::little) {
-      // The same bytes; compilers do not always see that the loop is one store.
-      std::memcpy(to, &value, kSize);
+    if constexpr (requires { sink_.template store<kSize>(value); }) {
+      sink_.template store<kSize>(value);
     } else {
-      for (unsigned i = 0; i < kSize; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
+      storeLittleEndian<kSize>(sink_.reserve(kSize), value);
     }
   }
 
@@ -103,24 +123,12 @@ void writeSlots(Records& write, const Map& map) {
     write.put(map.generationAt(i));
     if (map.aliveAt(i)) write.put(map.valueAt(i));
   }
-  write.put(static_cast<std::uint32_t>(map.freeList().size()));
-  for (const std::uint32_t index : map.freeList()) write.put(index);
 }
 
 template <class Records, class List>
 void writeList(Records& write, const List& list) {
   write.put(static_cast<std::uint64_t>(list.size()));
   for (const auto& record : list) write.put(record);
-}
-
-/// A whole world: settings, clock, bodies, shapes, pairs, handlers; each list with its length.
-template <class Records, class World>
-void writeWorld(Records& write, const World& world) {
-  writeFrame(write, world);
-  writeSlots(write, world.bodies);
-  writeSlots(write, world.shapes);
-  writeList(write, world.pairs);
-  writeList(write, world.handlers);
 }
 
 }  // namespace samestep

@@ -10,6 +10,8 @@
 #include <samestep/id.h>
 #include <samestep/vector.h>
 
+#include "canonical.h"
+
 namespace samestep {
 
 /// Bytes from outside, taken from the front, never past their end.
@@ -32,6 +34,12 @@ class ByteReader {
     offset_ += count;
     return taken;
   }
+  template <unsigned kSize>
+  std::uint64_t load() {
+    return loadLittleEndian<kSize>(take(kSize).data());
+  }
+  /// What is left.
+  std::span<const std::uint8_t> rest() const { return bytes_.subspan(static_cast<std::size_t>(offset_)); }
 
  private:
   std::span<const std::uint8_t> bytes_;
@@ -40,9 +48,11 @@ class ByteReader {
 
 /// The inverse of CanonicalWriter, by the same fields() lists. Numbers are taken as they come, but those with
 /// mantissa and exponent must be normalised; whether a record makes sense is for its reader to find out.
-class CanonicalReader {
+/// `Source` has `std::uint64_t load<size>()` for the next plain number, and offset().
+template <class Source>
+class FieldReader {
  public:
-  explicit CanonicalReader(ByteReader& bytes) : bytes_(bytes) {}
+  explicit FieldReader(Source& source) : source_(source) {}
 
   template <class T>
   void operator()(const char*, T& value) {
@@ -87,7 +97,7 @@ class CanonicalReader {
     t.exponent();
   }
   void get(T& value) {
-    const std::uint64_t start = bytes_.offset();
+    const std::uint64_t start = source_.offset();
     const auto mantissa = next<std::int64_t>();
     const auto exponent = next<std::int64_t>();
     if (!T::isValid(mantissa, exponent)) failFormat(start, "not a normalised number");
@@ -95,7 +105,7 @@ class CanonicalReader {
   }
   /// A record with fields of its own.
   template <class T>
-  requires requires(T& t, CanonicalReader& r) { T::fields(t, r); }
+  requires requires(T& t, FieldReader& r) { T::fields(t, r); }
   void get(T& value) { T::fields(value, *this); }
 
   template <class T>
@@ -108,13 +118,13 @@ class CanonicalReader {
  private:
   template <unsigned kSize>
   std::uint64_t load() {
-    const std::span<const std::uint8_t> from = bytes_.take(kSize);
-    std::uint64_t value = 0;
-    for (unsigned i = 0; i < kSize; ++i) value |= std::uint64_t{from[i]} << (8 * i);
-    return value;
+    return source_.template load<kSize>();
   }
 
-  ByteReader& bytes_;
+  Source& source_;
 };
+
+/// Of canonical bytes.
+using CanonicalReader = FieldReader<ByteReader>;
 
 }  // namespace samestep

@@ -110,12 +110,43 @@ const char* message(Fault fault) {
       return "These bytes are not what they should be.";
     case Fault::KernelUnavailable:
       return "This build or this processor does not have that kernel.";
+    case Fault::IllegalId:
+      return "A given id must have an odd generation, higher than any its slot has had.";
+    case Fault::UnsoundArithmetic:
+      return "The processor is in a mode in which double gives other results.";
   }
   return "Unknown fault.";
 }
 
 namespace {
+
 FailureHandler failureHandler = nullptr;
+
+char* append(char* to, const char* text) {
+  while (*text != 0) *to++ = *text++;
+  return to;
+}
+char* append(char* to, std::uint32_t number) {
+  if (number >= 10) to = append(to, number / 10);
+  *to = static_cast<char>('0' + number % 10);
+  return to + 1;
+}
+
+}  // namespace
+
+RevisionError::RevisionError(std::uint64_t offset, std::uint32_t found, std::uint32_t own)
+    : FormatError(offset, message(Fault::MalformedBytes)), found_(found), own_(own) {
+  char* end = append(append(text_, "made by simulation revision "), found);
+  end = append(append(append(end, ", whose results differ from those of revision "), own), ", this build's");
+  *end = 0;
+}
+
+[[noreturn]] void failRevision(std::uint64_t offset, std::uint32_t found, std::uint32_t own) {
+#if defined(__cpp_exceptions)
+  throw RevisionError(offset, found, own);
+#else
+  failWithoutExceptions(Fault::MalformedBytes, RevisionError(offset, found, own).what());
+#endif
 }
 
 void setFailureHandler(FailureHandler handler) { failureHandler = handler; }

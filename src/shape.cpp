@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/shape.h>
 
+#include <algorithm>
 #include <type_traits>
 
 #include "shape_geometry.h"
@@ -83,14 +84,26 @@ void Shape<S>::setGeometry(ShapeType type, std::span<const Vector<S>> vertices, 
 }
 
 template <Scalar S>
-bool Shape<S>::wellFormed() const {
-  if (sensor_ > 1 || count_ < 1 || count_ > kMaxPolyVertices) return false;
+bool Shape<S>::surfaceWellFormed() const {
+  const S most(kMaxMaterial);
+  if (!(elasticity_ >= S(0) && elasticity_ <= most && friction_ >= S(0) && friction_ <= most)) return false;
+  return sensor_ <= 1 && within(surfaceVelocity_, most);
+}
+
+template <Scalar S>
+bool Shape<S>::sameGeometry(const Shape& other) const {
+  return type_ == other.type_ && radius_ == other.radius_ && massInfo_ == other.massInfo_ &&
+         count_ == other.count_ && count_ <= kMaxPolyVertices &&
+         std::equal(vertices_, vertices_ + count_, other.vertices_);
+}
+
+template <Scalar S>
+bool Shape<S>::geometryWellFormed() const {
+  if (count_ < 1 || count_ > kMaxPolyVertices) return false;
   for (int i = count_; i < kMaxPolyVertices; ++i) {
     if (vertices_[i] != Vector<S>()) return false;
   }
-  const S most(kMaxMaterial);
-  if (!(elasticity_ >= S(0) && elasticity_ <= most && friction_ >= S(0) && friction_ <= most)) return false;
-  if (!within(surfaceVelocity_, most) || !massSupported(massInfo_.mass)) return false;
+  if (!massSupported(massInfo_.mass)) return false;
 
   const S limit(kMaxExtent);
   const std::span<const Vector<S>> core =

@@ -203,18 +203,36 @@ void Space<S>::setBounceThreshold(S speed) {
 // Bodies.
 
 template <Scalar S>
-BodyId Space<S>::add(const Body<S>& body) {
+void Space<S>::checkNew(const Body<S>& body) const {
   requireUnlocked();
   require<Fault::DuplicateBody>(!body.id().valid() || body.owner_ != impl_->serial);
   require<Fault::AttachedBody>(!body.id().valid());
   require<Fault::IllegalBody>(within(body.worldCenter(), worldExtent()), "Body's position is invalid.");
+}
 
-  const BodyId id = state_.bodies.insert(body);
+/// Makes a body just stored its own.
+template <Scalar S>
+void Space<S>::attach(BodyId id) {
   Body<S>& kept = state_.bodies.valueAt(id.index);
   kept.id_ = id;
   kept.owner_ = impl_->serial;
   ensureCache();
   impl_->growBodies(state_.bodies.slots());
+}
+
+template <Scalar S>
+BodyId Space<S>::add(const Body<S>& body) {
+  checkNew(body);
+  const BodyId id = state_.bodies.insert(body);
+  attach(id);
+  return id;
+}
+
+template <Scalar S>
+BodyId Space<S>::add(const Body<S>& body, BodyId id) {
+  checkNew(body);
+  state_.bodies.insertAt(id, body);
+  attach(id);
   return id;
 }
 
@@ -281,7 +299,7 @@ void Space<S>::setType(BodyId id, BodyType type) {
     checkShape(state_.shapes.valueAt(i), changed);
   }
   if (type == BodyType::dynamicBody) {
-    const MassProperties<S> mass = massOfShapes(id, {}, nullptr);
+    const MassProperties<S> mass = massOfShapes(id, Impl::kNone, nullptr);
     if (mass.mass > S(0)) changed.setMassProperties(mass);
   }
 
@@ -299,8 +317,10 @@ void Space<S>::checkShape(const Shape<S>& shape, const Body<S>& body) const {
                                  "A shape of a body that moves reaches farther than 2^8 m from its origin.");
 }
 
+/// What the shapes of a body weigh together, with `by`, unless it is null, in place of the one in the slot
+/// `replaced`, if there is one. By rising slot, so that it does not matter which came first.
 template <Scalar S>
-MassProperties<S> Space<S>::massOfShapes(BodyId id, ShapeId replaced, const Shape<S>* by) const {
+MassProperties<S> Space<S>::massOfShapes(BodyId id, std::uint32_t replaced, const Shape<S>* by) const {
   // The shapes' own sums first, then the parallel axes, all at full range: no Fixed intermediate can
   // overflow or lose a small shape beside a large one.
   struct Part {
@@ -315,14 +335,15 @@ MassProperties<S> Space<S>::massOfShapes(BodyId id, ShapeId replaced, const Shap
             Part{toScaled(info.mass), toScaled(info.centroid.x), toScaled(info.centroid.y), info.unitMoment});
       }
     };
+    const Shape<S>* waiting = by;
     for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
-      if (state_.shapes.idAt(i) == replaced) {
-        if (by != nullptr) visitShape(*by);
-      } else {
-        visitShape(state_.shapes.valueAt(i));
+      if (waiting != nullptr && i >= replaced) {
+        visitShape(*waiting);
+        waiting = nullptr;
       }
+      if (i != replaced) visitShape(state_.shapes.valueAt(i));
     }
-    if (!replaced.valid() && by != nullptr) visitShape(*by);
+    if (waiting != nullptr) visitShape(*waiting);
   };
   // One lonely shape keeps its numbers exactly.
   eachPart([&](const Part& part) {
@@ -345,6 +366,22 @@ MassProperties<S> Space<S>::massOfShapes(BodyId id, ShapeId replaced, const Shap
 
 template <Scalar S>
 ShapeId Space<S>::add(const Shape<S>& shape) {
+  const ShapeId id = state_.shapes.nextId();
+  insert(shape, id);
+  return id;
+}
+
+template <Scalar S>
+ShapeId Space<S>::add(const Shape<S>& shape, ShapeId id) {
+  requireUnlocked();
+  state_.shapes.checkGiven(id);
+  insert(shape, id);
+  return id;
+}
+
+/// @pre the id can be given to a new shape
+template <Scalar S>
+void Space<S>::insert(const Shape<S>& shape, ShapeId id) {
   requireUnlocked();
   require<Fault::DuplicateShape>(!shape.id().valid() || shape.owner() != impl_->serial);
   require<Fault::AttachedShape>(!shape.id().valid());
@@ -354,12 +391,11 @@ ShapeId Space<S>::add(const Shape<S>& shape) {
   ensureCache();
   const BodyId bodyId = shape.body();
   if (holder.isDynamic() && shape.mass() > S(0)) {
-    const MassProperties<S> mass = massOfShapes(bodyId, {}, &shape);
-    state_.bodies.valueAt(bodyId.index).setMassProperties(mass);
+    state_.bodies.valueAt(bodyId.index).setMassProperties(massOfShapes(bodyId, id.index, &shape));
   }
 
   impl_->shapesHashKnown = false;
-  const ShapeId id = state_.shapes.insert(shape);
+  state_.shapes.store(id, shape);
   Shape<S>& kept = state_.shapes.valueAt(id.index);
   kept.attach(id, impl_->serial);
   impl_->growShapes(state_.shapes.slots());
@@ -368,7 +404,6 @@ ShapeId Space<S>::add(const Shape<S>& shape) {
   // The next step or query places all shapes of the body.
   impl_->poses[bodyId.index].known = false;
   impl_->touch(bodyId.index);
-  return id;
 }
 
 template <Scalar S>
@@ -389,7 +424,7 @@ void Space<S>::eraseShape(ShapeId id) {
 
   Body<S>& holder = state_.bodies.valueAt(bodyId.index);
   const bool hadMass = state_.shapes.valueAt(id.index).mass() > S(0);
-  if (holder.isDynamic() && hadMass) holder.setMassProperties(massOfShapes(bodyId, id, nullptr));
+  if (holder.isDynamic() && hadMass) holder.setMassProperties(massOfShapes(bodyId, id.index, nullptr));
   impl_->dropBox(id.index);
   impl_->unlinkShape(bodyId.index, id.index);
   impl_->shapesHashKnown = false;
@@ -418,7 +453,7 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
     Body<S>& holder = state_.bodies.valueAt(kept.body().index);
     checkShape(next, holder);
     ensureCache();
-    if (holder.isDynamic() && !sameMass) holder.setMassProperties(massOfShapes(kept.body(), id, &next));
+    if (holder.isDynamic() && !sameMass) holder.setMassProperties(massOfShapes(kept.body(), id.index, &next));
     impl_->touch(kept.body().index);
   }
 
@@ -446,7 +481,7 @@ void Space<S>::forgetManifolds(ShapeId id) {
 template <Scalar S>
 void Space<S>::accumulateMassFromShapes(BodyId id) {
   Body<S>& kept = body(id);
-  if (kept.isDynamic()) kept.setMassProperties(massOfShapes(id, {}, nullptr));
+  if (kept.isDynamic()) kept.setMassProperties(massOfShapes(id, Impl::kNone, nullptr));
 }
 
 template <Scalar S>
@@ -637,6 +672,8 @@ template <Scalar S>
 void Space<S>::save(SavedSpace<S>& into) const {
   requireUnlocked();
   into.state_ = state_;
+  if (into.cache_ == nullptr) into.cache_ = new SpaceCache<S>;
+  into.cache_->copyFrom(*impl_);
 }
 
 template <Scalar S>
@@ -649,24 +686,42 @@ SavedSpace<S> Space<S>::save() const {
 template <Scalar S>
 void Space<S>::restore(const SavedSpace<S>& saved) {
   adopt(saved.state_);
+  if (saved.cache_ != nullptr) impl_->copyFrom(*saved.cache_);
 }
 
 template <Scalar S>
 void Space<S>::adopt(const WorldState<S>& state) {
+  checkAdoptable(state);
+  state_ = state;
+  takeOver();
+}
+
+template <Scalar S>
+void Space<S>::adopt(WorldState<S>&& state) {
+  checkAdoptable(state);
+  state_ = std::move(state);
+  takeOver();
+}
+
+template <Scalar S>
+void Space<S>::checkAdoptable(const WorldState<S>& state) const {
   requireUnlocked();
   require<Fault::ForeignWorld>(state.bodies.contains(state.staticBody), "Nothing was saved there.");
   for (const HandlerBinding& binding : state.handlers) {
     require<Fault::MissingCallback>(Impl::find(impl_->handlers, binding.number) != nullptr);
   }
   state.bodies.each([&](BodyId, const Body<S>& body) { requireCallbacks(body); });
+}
 
-  state_ = state;
+/// Makes a state that came from elsewhere this Space's own.
+template <Scalar S>
+void Space<S>::takeOver() {
   state_.bodies.each([&](BodyId id, Body<S>& body) {
     body.id_ = id;
     body.owner_ = impl_->serial;
   });
-  impl_->shapesHashKnown = false;
   state_.shapes.each([&](ShapeId id, Shape<S>& shape) { shape.attach(id, impl_->serial); });
+  impl_->shapesHashKnown = false;
   rangeEvents_.clear();
   dropCache();
 }

@@ -1,9 +1,96 @@
 // SPDX-License-Identifier: MIT
 // What a Space computes from its state and may forget at any time: lists of shapes, placed geometry, trees.
+#include <utility>
+
 #include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {
+
+template <Scalar S>
+void SpaceCache<S>::copyFrom(const SpaceCache& other) {
+  cached = other.cached;
+  shapesHashKnown = other.shapesHashKnown;
+  shapesHash = other.shapesHash;
+  if (!cached) return;
+  poses = other.poses;
+  firstShape = other.firstShape;
+  lastShape = other.lastShape;
+  nextShape = other.nextShape;
+  placed = other.placed;
+  traits = other.traits;
+  surfacesKnown = other.surfacesKnown;
+  leftMidway = other.leftMidway;
+  planeOffset = other.planeOffset;
+  planes = other.planes;
+  touched = other.touched;
+  isTouched = other.isTouched;
+  planeRoom = other.planeRoom;
+  staticTree.copyFrom(other.staticTree);
+  dynamicTree.copyFrom(other.dynamicTree);
+  usePlanes();
+}
+
+/// Points each placed shape to its planes.
+template <Scalar S>
+void SpaceCache<S>::usePlanes() {
+  for (std::size_t i = 0; i < placed.size(); ++i) placed[i].planes = planes.data() + planeOffset[i];
+}
+
+template <Scalar S>
+std::uint64_t SpaceCache<S>::bytes() const {
+  const auto of = [](const auto&... list) {
+    return (std::uint64_t{0} + ... + (list.size() * sizeof(list[0])));
+  };
+  if (!cached) return 0;
+  return of(poses, firstShape, lastShape, nextShape, placed, traits, planeOffset, planes, touched, isTouched,
+            planeRoom) +
+         staticTree.bytes() + dynamicTree.bytes();
+}
+
+template <Scalar S>
+SavedSpace<S>::SavedSpace() : cache_(new SpaceCache<S>) {}
+
+template <Scalar S>
+SavedSpace<S>::SavedSpace(const SavedSpace& other) : SavedSpace() {
+  *this = other;
+}
+
+template <Scalar S>
+SavedSpace<S>::SavedSpace(SavedSpace&& other) noexcept
+    : state_(std::move(other.state_)), cache_(std::exchange(other.cache_, nullptr)) {}
+
+template <Scalar S>
+SavedSpace<S>& SavedSpace<S>::operator=(const SavedSpace& other) {
+  if (this == &other) return *this;
+  state_ = other.state_;
+  if (cache_ == nullptr) cache_ = new SpaceCache<S>;
+  cache_->cached = false;
+  if (other.cache_ != nullptr) cache_->copyFrom(*other.cache_);
+  return *this;
+}
+
+template <Scalar S>
+SavedSpace<S>& SavedSpace<S>::operator=(SavedSpace&& other) noexcept {
+  std::swap(state_, other.state_);
+  std::swap(cache_, other.cache_);
+  return *this;
+}
+
+template <Scalar S>
+SavedSpace<S>::~SavedSpace() {
+  delete cache_;
+}
+
+template <Scalar S>
+std::uint64_t SavedSpace<S>::bytes() const {
+  const auto ofSlots = [](const auto& map) {
+    return map.values().size() * (sizeof(map.values()[0]) + sizeof(std::uint32_t));
+  };
+  return ofSlots(state_.bodies) + ofSlots(state_.shapes) + state_.pairs.size() * sizeof(Pair<S>) +
+         state_.handlers.size() * sizeof(HandlerBinding) + sizeof state_ +
+         (cache_ == nullptr ? 0 : cache_->bytes());
+}
 
 template <Scalar S>
 void Space<S>::Impl::growBodies(std::uint32_t slots) {
@@ -66,9 +153,7 @@ void Space<S>::Impl::prepareShape(std::uint32_t index, const Shape<S>& shape) {
     planeOffset[index] = static_cast<std::uint32_t>(planes.size());
     planeRoom[index] = room;
     planes.resize(planes.size() + room);
-    if (planes.data() != before) {
-      for (std::uint32_t i = 0; i < placed.size(); ++i) placed[i].planes = planes.data() + planeOffset[i];
-    }
+    if (planes.data() != before) this->usePlanes();
   }
   placed[index].planes = planes.data() + planeOffset[index];
   traits[index] = ShapeTraits<S>::of(shape);
@@ -217,9 +302,15 @@ std::span<const std::uint32_t> Space<S>::threadOf(BodyId id) {
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
+template struct SpaceCache<double>;
+template class SavedSpace<double>;
 template class Space<double>;
 #endif
+template struct SpaceCache<Fixed>;
+template class SavedSpace<Fixed>;
 template class Space<Fixed>;
+template struct SpaceCache<CheckedFixed>;
+template class SavedSpace<CheckedFixed>;
 template class Space<CheckedFixed>;
 void file_of::spaceCache() {}
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Worlds to bytes and, with everything checked, back.
+#include <samestep/environment.h>
 #include <samestep/space_codec.h>
 
+#include <limits>
 #include <tuple>
 #include <utility>
 
-#include "canonical_bytes.h"
 #include "canonical_reader.h"
+#include "compact.h"
 #include "push_contacts.h"
 #include "require_ieee.h"
 
@@ -29,17 +31,38 @@ const char* flawOf(const Settings<S>& settings) {
   return both && sequential && soft ? nullptr : "a setting is out of range";
 }
 
+/// Finds flaws of the shapes of a world, one after the other. Worlds have many shapes of one geometry in a
+/// row, which is then looked at once.
 template <Scalar S>
-const char* flawOf(const WorldState<S>& world, ShapeId id, const Shape<S>& shape) {
-  if (shape.id() != id) return "a shape has another's id";
-  if (!shape.wellFormed()) return "a shape is malformed";
-  const Body<S>* body = world.bodies.find(shape.body());
-  if (body == nullptr) return "a shape is on a body that does not exist";
-  if (body->type() != BodyType::staticBody && shape.extent() > S(kMaxDynamicExtent)) {
-    return "a shape of a moving body is too large";
+class ShapeCheck {
+ public:
+  explicit ShapeCheck(const WorldState<S>& world) : world_(world) {}
+
+  /// @param shape  stays where it is as long as this object lives
+  const char* flawOf(ShapeId id, const Shape<S>& shape) {
+    if (shape.id() != id) return "a shape has another's id";
+    if (!shape.surfaceWellFormed() || !hasGoodGeometry(shape)) return "a shape is malformed";
+    const Body<S>* body = world_.bodies.find(shape.body());
+    if (body == nullptr) return "a shape is on a body that does not exist";
+    if (body->type() != BodyType::staticBody && extent_ > S(kMaxDynamicExtent)) {
+      return "a shape of a moving body is too large";
+    }
+    return nullptr;
   }
-  return nullptr;
-}
+
+ private:
+  bool hasGoodGeometry(const Shape<S>& shape) {
+    if (last_ != nullptr && shape.sameGeometry(*last_)) return true;
+    if (!shape.geometryWellFormed()) return false;
+    last_ = &shape;
+    extent_ = shape.extent();
+    return true;
+  }
+
+  const WorldState<S>& world_;
+  const Shape<S>* last_ = nullptr;
+  S extent_{};
+};
 
 template <Scalar S>
 const char* flawOf(const Contact<S>& contact) {
@@ -120,9 +143,10 @@ class WorldReader {
       return body.wellFormed() ? nullptr : "a body is malformed";
     });
     if (const char* flaw = flawOfFrame(world_)) failFormat(start, flaw);
-    slots(world_.shapes, limits_.shapes, "more shapes than allowed", [this](ShapeId id, Shape<S>& shape) {
+    ShapeCheck<S> check(world_);
+    slots(world_.shapes, limits_.shapes, "more shapes than allowed", [&](ShapeId id, Shape<S>& shape) {
       shape.attach(id, 0);
-      return flawOf(world_, id, shape);
+      return check.flawOf(id, shape);
     });
     list(world_.pairs, limits_.pairs, "more pairs than allowed", [this](Pair<S>& pair) {
       const auto exists = [&](ShapeId id) {
@@ -152,41 +176,36 @@ class WorldReader {
   void slots(SlotMap<T, IdType>& map, std::uint32_t most, const char* tooMany, Flaw&& flawIn) {
     const std::uint64_t start = bytes_.offset();
     const auto count = read_.next<std::uint32_t>();
-    // Every slot takes four bytes at least.
-    if (count > most || count > bytes_.remaining() / 4) failFormat(start, tooMany);
-    std::vector<T> values;
-    std::vector<std::uint32_t> generations;
+    if (count > most || count > bytes_.remaining() / kCompactCodeBytes) failFormat(start, tooMany);
+    std::vector<T> values(count);
+    std::vector<std::uint32_t> generations(count);
+    CompactReader records(bytes_);
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint64_t at = bytes_.offset();
-      generations.push_back(read_.next<std::uint32_t>());
-      values.emplace_back();
-      if ((generations.back() & 1) == 0) continue;
-      read_.get(values.back());
+      records.getIf(generations[i], [&](auto& read) {
+        if ((generations[i] & 1) != 0) read.get(values[i]);
+      });
+      if ((generations[i] & 1) == 0) continue;
       IdType id;
       id.index = i;
-      id.generation = generations.back();
-      if (const char* flaw = flawIn(id, values.back())) failFormat(at, flaw);
+      id.generation = generations[i];
+      if (const char* flaw = flawIn(id, values[i])) failFormat(at, flaw);
     }
-    const std::uint64_t freeStart = bytes_.offset();
-    const auto freeCount = read_.next<std::uint32_t>();
-    if (freeCount > count) failFormat(freeStart, "more free slots than slots");
-    std::vector<std::uint32_t> freeList;
-    for (std::uint32_t i = 0; i < freeCount; ++i) freeList.push_back(read_.next<std::uint32_t>());
-    if (!map.restore(std::move(values), std::move(generations), std::move(freeList))) {
-      failFormat(freeStart, "the free slots are not those of the list");
-    }
+    const bool good = map.restore(std::move(values), std::move(generations));
+    if (!good) failFormat(start, "a generation is too high");
   }
 
   template <class T, class Flaw>
   void list(std::vector<T>& items, std::uint32_t most, const char* tooMany, Flaw&& flawIn) {
     const std::uint64_t start = bytes_.offset();
     const auto count = read_.next<std::uint64_t>();
-    if (count > most || count > bytes_.remaining()) failFormat(start, tooMany);
+    if (count > most || count > bytes_.remaining() / kCompactCodeBytes) failFormat(start, tooMany);
+    items.resize(static_cast<std::size_t>(count));
+    CompactReader records(bytes_);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint64_t at = bytes_.offset();
-      items.emplace_back();
-      read_.get(items.back());
-      if (const char* flaw = flawIn(items.back())) failFormat(at, flaw);
+      records.get(items[i]);
+      if (const char* flaw = flawIn(items[i])) failFormat(at, flaw);
       if (i > 0 && !inOrder(items[i - 1], items[i])) failFormat(at, "a list is not in order");
     }
   }
@@ -200,15 +219,46 @@ class WorldReader {
 }  // namespace
 
 template <Scalar S>
+std::uint64_t encodeWorld(const WorldState<S>& world, std::span<std::uint8_t> into) {
+  SpanSink sink(into);
+  CanonicalWriter<SpanSink> plain(sink);
+  const auto slots = [&](const auto& map) {
+    plain.put(map.slots());
+    CompactWriter records(sink);
+    for (std::uint32_t i = 0; i < map.slots(); ++i) {
+      if (map.aliveAt(i)) {
+        records.put(map.generationAt(i), map.valueAt(i));
+      } else {
+        records.put(map.generationAt(i));
+      }
+    }
+  };
+  const auto list = [&](const auto& items) {
+    plain.put(static_cast<std::uint64_t>(items.size()));
+    CompactWriter records(sink);
+    for (const auto& record : items) records.put(record);
+  };
+  writeFrame(plain, world);
+  slots(world.bodies);
+  slots(world.shapes);
+  list(world.pairs);
+  list(world.handlers);
+  return sink.used();
+}
+
+template <Scalar S>
 void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes) {
-  BytesSink sink(bytes);
-  CanonicalWriter<BytesSink> write(sink);
-  writeWorld(write, world);
+  const std::size_t before = bytes.size();
+  const auto size = static_cast<std::size_t>(encodeWorld(world, std::span<std::uint8_t>()));
+  bytes.resize(before + size);
+  encodeWorld(world, std::span(bytes).subspan(before));
 }
 
 template <Scalar S>
 WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset,
                           const WorldLimits& limits) {
+  // Rotations and inverse masses follow from what is read.
+  requireSoundArithmetic<S>();
   ByteReader reader(bytes, offset);
   WorldState<S> world = WorldReader<S>(reader, limits).world();
   offset = reader.offset();
@@ -225,8 +275,9 @@ const char* flawOf(const WorldState<S>& world, const WorldLimits& limits) {
   world.bodies.each([&](BodyId, const Body<S>& body) {
     if (flaw == nullptr && !body.wellFormed()) flaw = "a body is malformed";
   });
+  ShapeCheck<S> check(world);
   world.shapes.each([&](ShapeId id, const Shape<S>& shape) {
-    if (flaw == nullptr) flaw = flawOf(world, id, shape);
+    if (flaw == nullptr) flaw = check.flawOf(id, shape);
   });
   for (const Pair<S>& pair : world.pairs) {
     if (flaw == nullptr) flaw = flawOf(world, pair);
@@ -235,15 +286,18 @@ const char* flawOf(const WorldState<S>& world, const WorldLimits& limits) {
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
+template std::uint64_t encodeWorld<double>(const WorldState<double>&, std::span<std::uint8_t>);
 template void encodeWorld<double>(const WorldState<double>&, std::vector<std::uint8_t>&);
 template WorldState<double> decodeWorld<double>(std::span<const std::uint8_t>, std::uint64_t&,
                                                 const WorldLimits&);
 template const char* flawOf<double>(const WorldState<double>&, const WorldLimits&);
 #endif
+template std::uint64_t encodeWorld<Fixed>(const WorldState<Fixed>&, std::span<std::uint8_t>);
 template void encodeWorld<Fixed>(const WorldState<Fixed>&, std::vector<std::uint8_t>&);
 template WorldState<Fixed> decodeWorld<Fixed>(std::span<const std::uint8_t>, std::uint64_t&,
                                               const WorldLimits&);
 template const char* flawOf<Fixed>(const WorldState<Fixed>&, const WorldLimits&);
+template std::uint64_t encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&, std::span<std::uint8_t>);
 template void encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&, std::vector<std::uint8_t>&);
 template WorldState<CheckedFixed> decodeWorld<CheckedFixed>(std::span<const std::uint8_t>, std::uint64_t&,
                                                             const WorldLimits&);

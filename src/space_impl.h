@@ -47,9 +47,51 @@ struct ShapeTraits {
   }
 };
 
+/// What a Space computes from its state and can compute again at any time, by body or shape slot. A saved
+/// world holds a copy, which spares the next step the work.
+template <Scalar S>
+struct SpaceCache {
+  SpaceCache() = default;
+  SpaceCache(const SpaceCache&) = delete;
+  SpaceCache& operator=(const SpaceCache&) = delete;
+  void copyFrom(const SpaceCache& other);
+  /// Bytes that copyFrom copies.
+  std::uint64_t bytes() const;
+
+  bool cached = false;
+  // Of all shapes, until one is added, changed or removed.
+  bool shapesHashKnown = false;
+  std::uint64_t shapesHash = 0;
+  std::vector<PlacedPose<S>> poses;
+  std::vector<std::uint32_t> firstShape;
+  std::vector<std::uint32_t> lastShape;
+  std::vector<std::uint32_t> nextShape;
+  std::vector<PlacedShape<S>> placed;
+  std::vector<ShapeTraits<S>> traits;
+  // Whether the surfaces in all pairs that touched in the last step are those of the shapes.
+  bool surfacesKnown = false;
+  std::vector<std::uint32_t> planeOffset;
+  std::vector<Plane<S>> planes;
+  // Whether a step left midway: it may have moved bodies without placing them.
+  bool leftMidway = false;
+  // Bodies that may have been moved by hand since the last step, each once.
+  std::vector<std::uint32_t> touched;
+  std::vector<std::uint8_t> isTouched;
+  std::vector<std::uint32_t> planeRoom;
+  BBTree<S> staticTree;
+  BBTree<S> dynamicTree{nullptr, nullptr, &staticTree};
+
+  void usePlanes();
+};
+
 /// What a Space has beside its state.
 template <Scalar S>
-struct Space<S>::Impl {
+struct Space<S>::Impl : SpaceCache<S> {
+  using SpaceCache<S>::poses, SpaceCache<S>::firstShape, SpaceCache<S>::lastShape, SpaceCache<S>::nextShape,
+      SpaceCache<S>::placed, SpaceCache<S>::planeOffset, SpaceCache<S>::planes, SpaceCache<S>::touched,
+      SpaceCache<S>::isTouched, SpaceCache<S>::planeRoom, SpaceCache<S>::traits, SpaceCache<S>::staticTree,
+      SpaceCache<S>::dynamicTree;
+
   // Wiring: who is told. By rising number.
   template <class Function>
   struct Registered {
@@ -79,30 +121,8 @@ struct Space<S>::Impl {
   std::vector<PostStep> postStep;
   bool runningPostStep = false;
 
-  // Cache: can be computed again from the state at any time, by body or shape slot.
-  bool cached = false;
-  // Of all shapes, until one is added, changed or removed.
-  bool shapesHashKnown = false;
-  std::uint64_t shapesHash = 0;
-  std::vector<PlacedPose<S>> poses;
-  std::vector<std::uint32_t> firstShape;
-  std::vector<std::uint32_t> lastShape;
-  std::vector<std::uint32_t> nextShape;
-  std::vector<PlacedShape<S>> placed;
-  std::vector<ShapeTraits<S>> traits;
-  // Whether the surfaces in all pairs that touched in the last step are those of the shapes.
-  bool surfacesKnown = false;
-  std::vector<std::uint32_t> planeOffset;
-  std::vector<Plane<S>> planes;
+  // Cache, of one step.
   bool keepPlaced = false;
-  // Whether a step left midway: it may have moved bodies without placing them.
-  bool leftMidway = false;
-  // Bodies that may have been moved by hand since the last step, each once.
-  std::vector<std::uint32_t> touched;
-  std::vector<std::uint8_t> isTouched;
-  std::vector<std::uint32_t> planeRoom;
-  BBTree<S> staticTree;
-  BBTree<S> dynamicTree{nullptr, nullptr, &staticTree};
   // The pairs of each body, as ranges of threadPairs; made on demand.
   bool threadsKnown = false;
   std::vector<std::uint32_t> threadStart;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The step, stage by stage.
+#include <samestep/environment.h>
+
 #include <algorithm>
 #include <atomic>
 
@@ -81,6 +83,7 @@ void Space<S>::endStage(Stage stage) {
 
 template <Scalar S>
 void Space<S>::checkStep(S dt) const {
+  requireSoundArithmetic<S>();
   require<Fault::ValueOutOfRange>(dt > S(0) && dt <= kMaxTimeStep<S>);
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;

@@ -65,5 +65,21 @@ TEST(ErrorDeathTest, TheFailureHandlerIsToldBeforeTheEnd) {
       "told: Body's mass is negative.");
 }
 
+TEST(ErrorTest, ARevisionErrorNamesBothRevisions) {
+  try {
+    failRevision(12, 4294967295u, 30);
+  } catch (const FormatError& error) {
+    EXPECT_EQ(error.offset(), 12u);
+    EXPECT_STREQ(
+        error.what(),
+        "made by simulation revision 4294967295, whose results differ from those of revision 30, this "
+        "build's");
+    const RevisionError copy = dynamic_cast<const RevisionError&>(error);
+    EXPECT_STREQ(copy.what(), error.what());
+    EXPECT_EQ(copy.found(), 4294967295u);
+    EXPECT_EQ(copy.own(), 30u);
+  }
+}
+
 }  // namespace
 }  // namespace samestep

@@ -57,7 +57,8 @@ TEST_F(ProgramTest, TellsItsVersion) {
   const Outcome outcome = run("--version");
 
   EXPECT_EQ(outcome.code, 0);
-  for (const char* part : {"samestep ", "simulation revision ", "scalars ", "fixed", "compiler "}) {
+  for (const char* part :
+       {"samestep ", "simulation revision ", "scalars ", "fixed", "compiler ", "fingerprint fixed "}) {
     EXPECT_THAT(outcome.out, HasSubstr(part));
   }
 }

@@ -4,6 +4,8 @@
 #include <samestep/verify.h>
 #include <samestep/version.h>
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "support/recordings.h"
@@ -44,7 +46,8 @@ TYPED_TEST(RecordingTest, KeepsEveryCommandAndHash) {
   const std::vector<CommandKind> all = {
       CommandKind::applyImpulse, CommandKind::applyForce,         CommandKind::spawn,
       CommandKind::setVelocity,  CommandKind::setAngularVelocity, CommandKind::userInput,
-      CommandKind::setPosition,  CommandKind::setAngle,           CommandKind::remove};
+      CommandKind::setPosition,  CommandKind::setAngle,           CommandKind::spawn,
+      CommandKind::remove};
   EXPECT_EQ(kinds, all);
 }
 
@@ -92,6 +95,22 @@ TYPED_TEST(RecordingTest, OtherVersionsRevisionsAndScalarsAreRefusedAtTheirPlace
     altered[static_cast<std::size_t>(offset)] ^= 3;
     mendChecksum(altered);
     EXPECT_EQ(offsetOfComplaint<TypeParam>(altered), offset);
+  }
+}
+
+TYPED_TEST(RecordingTest, VerifyRefusesAnotherRevisionAndNamesBoth) {
+  Bytes altered = recordSmallMatch<TypeParam>(1);
+  altered[12] = kSimulationRevision + 41;
+  mendChecksum(altered);
+
+  try {
+    verify<TypeParam>(altered, namedHandlerWiring<TypeParam>());
+    ADD_FAILURE() << "another revision was verified";
+  } catch (const RevisionError& error) {
+    EXPECT_EQ(error.offset(), 12u);
+    const std::string text = error.what();
+    EXPECT_NE(text.find(std::to_string(kSimulationRevision + 41)), std::string::npos) << text;
+    EXPECT_EQ(error.own(), kSimulationRevision);
   }
 }
 
@@ -173,6 +192,35 @@ TYPED_TEST(RecordingTest, ASpawnIsAllOrNothing) {
   heavy.shapes.push_back(heavy.shapes[0]);
 
   expectRefused<IllegalBody>(space, [&] { apply<TypeParam>(space, heavy); });
+}
+
+TYPED_TEST(RecordingTest, ASpawnUnderGivenIdsIsAllOrNothing) {
+  using S = TypeParam;
+  Space<S> space;
+  fillSmall(space);
+  EXPECT_EQ(apply<S>(space, underGivenIds(discToSpawn<S>(), {12, 3}, {9, 1})), (BodyId{12, 3}));
+  EXPECT_EQ(space.shape({9, 1}).body(), (BodyId{12, 3}));
+  const auto refuses = [&](Spawn<S> spawn) {
+    expectRefused<IllegalId>(space, [&] { apply<S>(space, spawn); });
+  };
+
+  refuses(underGivenIds(discToSpawn<S>(), {12, 5}, {10, 1}));
+  refuses(underGivenIds(discToSpawn<S>(), {13, 1}, {9, 3}));
+  Spawn<S> twice = underGivenIds(discToSpawn<S>(), {13, 1}, {10, 1});
+  twice.shapes.push_back(twice.shapes[0]);
+  refuses(twice);
+}
+
+TYPED_TEST(RecordingTest, AGivenIdBeyondTheLimitsTakesNoRoom) {
+  const Bytes bytes = recordSmallMatch<TypeParam>();
+  VerifyOptions options;
+  options.limits.bodies = 12;
+  EXPECT_THROW(verify<TypeParam>(bytes, testWiring<TypeParam>(), options), FormatError);
+  options.limits.bodies = 13;
+  options.limits.shapes = 9;
+  EXPECT_THROW(verify<TypeParam>(bytes, testWiring<TypeParam>(), options), FormatError);
+  options.limits.shapes = 10;
+  EXPECT_TRUE(verify<TypeParam>(bytes, testWiring<TypeParam>(), options).matches);
 }
 
 TYPED_TEST(RecordingTest, SteppingPastTheRecorderIsRefused) {

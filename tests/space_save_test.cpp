@@ -96,9 +96,37 @@ TYPED_TEST(SpaceSaveTest, RestoredAtEachTickItContinuesAsTheOriginal) {
     for (int step = 0; step < kSteps; step += 1 + static_cast<int>(seed)) {
       Space<TypeParam>& into = step % 2 == 0 ? other : original;
       into.restore(saved[static_cast<std::size_t>(step)]);
+      if (step % 3 == 0) into.dropCache();
       const std::vector<std::uint64_t> rest(hashes.begin() + step, hashes.end());
       ASSERT_EQ(this->run(into, step, kSteps), rest) << "scene " << seed << ", restored before step " << step;
     }
+  }
+}
+
+// It holds what the Space had computed, by pointers into itself.
+TYPED_TEST(SpaceSaveTest, CopiesOfASavedWorldOutliveItAndItsSpace) {
+  using S = TypeParam;
+  SavedSpace<S> kept, moved, assigned;
+  std::vector<std::uint64_t> rest;
+  {
+    Space<S> space;
+    this->fill(space, 3);
+    this->run(space, 0, kSteps);
+    SavedSpace<S> saved = space.save();
+    kept = saved;
+    SavedSpace<S> copy(saved);
+    moved = std::move(copy);
+    copy = saved;
+    assigned = SavedSpace<S>(copy);
+    EXPECT_EQ(assigned.bytes(), saved.bytes());
+    EXPECT_GT(saved.bytes(), saved.state().pairs.size() * sizeof(Pair<S>));
+    rest = this->run(space, kSteps, 2 * kSteps);
+  }
+  Space<S> other;
+  this->wire(other);
+  for (const SavedSpace<S>* saved : {&kept, &moved, &assigned}) {
+    other.restore(*saved);
+    EXPECT_EQ(this->run(other, kSteps, 2 * kSteps), rest);
   }
 }
 

@@ -57,6 +57,31 @@ TYPED_TEST(StateDiffTest, TellsWhatOnlyOneWorldHas) {
   EXPECT_EQ(found[0].b, "no");
 }
 
+// They tell which ids come next.
+TYPED_TEST(StateDiffTest, NamesFreeSlotsThatDiffer) {
+  using S = TypeParam;
+  Space<S> a;
+  Space<S> b;
+  for (Space<S>* space : {&a, &b}) {
+    for (std::uint32_t i = 1; i < 4; ++i) space->remove(space->add(Body<S>(), BodyId{i, 1}));
+  }
+  EXPECT_TRUE(differences(a.state(), b.state()).empty());
+  b.remove(b.add(Body<S>(), BodyId{2, 3}));
+
+  std::vector<FieldDifference> found = differences(a.state(), b.state());
+
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].object, "body 2");
+  EXPECT_EQ(found[0].field, "generation");
+  EXPECT_EQ(found[0].a, "2");
+  EXPECT_EQ(found[0].b, "4");
+  b.remove(b.add(Body<S>(), BodyId{4, 1}));
+  found = differences(a.state(), b.state());
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[1].object, "body 4");
+  EXPECT_EQ(found[1].a, "none");
+}
+
 TYPED_TEST(StateDiffTest, StopsAfterAsManyAsAskedFor) {
   Space<TypeParam> a;
   Space<TypeParam> b;

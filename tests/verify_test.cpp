@@ -90,7 +90,7 @@ TYPED_TEST(VerifyTest, ACommandThatTheWorldRefusesHasAnOffset) {
 }
 
 TYPED_TEST(VerifyTest, WorldsLargerThanAllowedAreRefused) {
-  const Bytes bytes = recordSmallMatch<TypeParam>(10);
+  const Bytes bytes = recordSmallMatch<TypeParam>(9);
   VerifyOptions options;
   options.limits.bodies = 3;
 

@@ -70,6 +70,8 @@ class BBTree final : public SpatialIndex<S> {
   /// Takes over objects, pairs and margin of another tree, for a saved world: not the functions, nor the
   /// static index, whose content must be taken over as well.
   void copyFrom(const BBTree& other);
+  /// That copyFrom copies.
+  std::uint64_t bytes() const;
   const BoxTree& boxes() const { return tree_; }
 
   // The interface of the MIS.

@@ -114,6 +114,8 @@ class BoxTree {
   /// Hangs `value` where `child` was and refits all boxes above.
   /// @throws LeafError if parent is a leaf, InvalidChild if child does not hang there
   void replaceChild(Ref parent, Ref child, Ref value);
+  /// Of memory that a copy takes.
+  std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + places_.size() * sizeof(Place); }
   /// Whether boxes, heights, links and counts agree with each other.
   bool valid() const;
 

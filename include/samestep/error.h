@@ -59,6 +59,8 @@ enum class Fault : std::uint8_t {
   ForeignWorld,     ///< A saved state of another kind of world.
   MalformedBytes,   ///< Bytes from outside that are not what they should be; see FormatError.
   KernelUnavailable,  ///< A forced kernel that was not built or that this processor cannot run.
+  IllegalId,  ///< An id that the caller gives to a new object and that its slot cannot have any more.
+  UnsoundArithmetic,  ///< The processor is in a mode in which double gives other results.
 };
 
 /// The sentence a user reads: the MIS's own where it has one. MIS: message
@@ -133,6 +135,8 @@ using MissingCallback = FaultError<Fault::MissingCallback>;
 using ForeignWorld = FaultError<Fault::ForeignWorld>;
 using MalformedBytes = FaultError<Fault::MalformedBytes>;
 using KernelUnavailable = FaultError<Fault::KernelUnavailable>;
+using IllegalId = FaultError<Fault::IllegalId>;
+using UnsoundArithmetic = FaultError<Fault::UnsoundArithmetic>;
 
 /// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.
 class FormatError : public MalformedBytes {
@@ -143,6 +147,22 @@ class FormatError : public MalformedBytes {
 
  private:
   std::uint64_t offset_;
+};
+
+/// Bytes of another revision of the simulation, whose results differ. The text names both.
+class RevisionError : public FormatError {
+ public:
+  RevisionError(std::uint64_t offset, std::uint32_t found, std::uint32_t own);
+  const char* what() const noexcept override { return text_; }
+  /// Of the build that made the bytes.
+  std::uint32_t found() const { return found_; }
+  /// Of this build.
+  std::uint32_t own() const { return own_; }
+
+ private:
+  std::uint32_t found_;
+  std::uint32_t own_;
+  char text_[112];
 };
 
 [[noreturn]] void failWithoutExceptions(Fault fault, const char* text);
@@ -180,6 +200,9 @@ template <Fault F>
   failWithoutExceptions(Fault::MalformedBytes, reason);
 #endif
 }
+
+/// Throws a RevisionError, as fail does.
+[[noreturn]] void failRevision(std::uint64_t offset, std::uint32_t found, std::uint32_t own);
 
 /// Runs an action on bytes from outside: what the engine refuses is the fault of those at `offset`, but not a
 /// missing callback.

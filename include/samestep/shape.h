@@ -187,7 +187,12 @@ class Shape {
 
   /// Whether the record could have been made by the functions of this library, the ids and the surface apart:
   /// for what was read from outside.
-  bool wellFormed() const;
+  bool wellFormed() const { return surfaceWellFormed() && geometryWellFormed(); }
+  /// The two parts of that: the second takes longer, and is the same for shapes of the same geometry.
+  bool surfaceWellFormed() const;
+  bool geometryWellFormed() const;
+  /// Whether type, vertices, radius and mass are the same.
+  bool sameGeometry(const Shape& other) const;
 
  private:
   friend class CircleShape<S>;

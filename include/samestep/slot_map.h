@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -11,13 +12,55 @@
 
 namespace samestep {
 
+/// Which of some slots are free, as bits, and which words of those have any: the lowest is found in a few
+/// operations.
+class FreeSlots {
+ public:
+  /// As many, none of them free.
+  void reset(std::uint32_t slots) {
+    words_.assign(wordsFor(slots), 0);
+    summary_.assign(wordsFor(wordsFor(slots)), 0);
+  }
+  /// New slots are not free.
+  void grow(std::uint32_t slots) {
+    words_.resize(wordsFor(slots), 0);
+    summary_.resize(wordsFor(wordsFor(slots)), 0);
+  }
+  void add(std::uint32_t slot) {
+    words_[slot / 64] |= bit(slot);
+    summary_[slot / 4096] |= bit(slot / 64);
+  }
+  void remove(std::uint32_t slot) {
+    words_[slot / 64] &= ~bit(slot);
+    if (words_[slot / 64] == 0) summary_[slot / 4096] &= ~bit(slot / 64);
+  }
+  /// `none` if there is none.
+  std::uint32_t lowest(std::uint32_t none) const {
+    for (std::uint32_t i = 0; i < summary_.size(); ++i) {
+      if (summary_[i] == 0) continue;
+      const std::uint32_t word = 64 * i + lowestBit(summary_[i]);
+      return 64 * word + lowestBit(words_[word]);
+    }
+    return none;
+  }
+
+ private:
+  static constexpr std::uint32_t wordsFor(std::uint32_t bits) { return bits / 64 + (bits % 64 != 0 ? 1 : 0); }
+  static constexpr std::uint64_t bit(std::uint32_t index) { return std::uint64_t{1} << (index % 64); }
+  static constexpr std::uint32_t lowestBit(std::uint64_t word) {
+    return static_cast<std::uint32_t>(std::countr_zero(word));
+  }
+
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t> summary_;
+};
+
 /// Values named by ids: a slot and its generation. Every id given out names one value for ever: after erase
 /// it names nothing, whatever later uses the slot.
 ///
-/// A generation is odd while the slot is in use; insert and erase each raise it by one. Freed slots are used
-/// again last-in first-out, and the list of them is part of the state: a copy, or one restored from
-/// generations(), freeList() and the values, gives out the same ids as the original. A free slot holds T().
-/// References last until the next insert.
+/// A generation is odd while the slot is in use; insert and erase each raise it by one. A new value goes to
+/// the lowest free slot, or a caller says where: which ids come next follows from which slots are free, not
+/// from the order in which they became so. A free slot holds T(). References last until the next insert.
 template <class T, class IdType>
 class SlotMap {
  public:
@@ -30,36 +73,61 @@ class SlotMap {
   /// Slots ever used: every index is below this.
   std::uint32_t slots() const { return static_cast<std::uint32_t>(generations_.size()); }
 
+  /// Given indices are below this: a single one cannot take memory without end.
+  static constexpr std::uint32_t kMaxGivenSlots = 1u << 16;
+
   /// The id that the next insert will give.
   IdType nextId() const {
-    const std::uint32_t slot = free_.empty() ? slots() : free_.back();
-    return makeId(slot, free_.empty() ? 1 : generations_[slot] + 1);
+    const std::uint32_t slot = free_.lowest(slots());
+    return makeId(slot, slot == slots() ? 1 : generations_[slot] + 1);
   }
 
-  /// Stores the value in the slot freed last, or a new one.
+  /// Stores the value in the lowest free slot, or a new one.
   /// @throws IllegalSize when no index is left
   IdType insert(T value) {
     const IdType id = nextId();
-    if (free_.empty()) {
-      require<Fault::IllegalSize>(slots() < IdType::kNoIndex);
-      values_.push_back(std::move(value));
-      generations_.push_back(id.generation);
-      // So that erase never allocates.
-      free_.reserve(values_.capacity());
-    } else {
-      free_.pop_back();
-      values_[id.index] = std::move(value);
-      generations_[id.index] = id.generation;
-    }
-    ++size_;
+    require<Fault::IllegalSize>(id.index < IdType::kNoIndex);
+    store(id, std::move(value));
     return id;
+  }
+
+  /// Stores the value under an id of the caller's choice. New slots below it are free.
+  /// @throws as checkGiven
+  void insertAt(IdType id, T value) {
+    checkGiven(id);
+    store(id, std::move(value));
+  }
+  /// Refuses an id under which insertAt can store nothing.
+  /// @throws IndexOutOfBounds if its index is not below kMaxGivenSlots; IllegalId unless its generation is
+  ///         odd, below kRetired and higher than any its slot has had, and the slot free
+  void checkGiven(IdType id) const {
+    require<Fault::IndexOutOfBounds>(id.index < kMaxGivenSlots);
+    const std::uint32_t before = id.index < slots() ? generations_[id.index] : 0;
+    require<Fault::IllegalId>((id.generation & 1) != 0 && id.generation < kRetired && (before & 1) == 0 &&
+                              id.generation > before);
+  }
+
+  /// Stores the value under an id that nextId gave or that checkGiven has let pass.
+  void store(IdType id, T value) {
+    const std::uint32_t before = slots();
+    if (id.index >= before) {
+      values_.resize(id.index + std::size_t{1});
+      generations_.resize(id.index + std::size_t{1}, 0);
+      free_.grow(slots());
+      for (std::uint32_t slot = before; slot < id.index; ++slot) free_.add(slot);
+    } else {
+      free_.remove(id.index);
+    }
+    values_[id.index] = std::move(value);
+    generations_[id.index] = id.generation;
+    ++size_;
   }
 
   /// Frees the slot. False, and nothing done, if the id names no value.
   bool erase(IdType id) {
     if (!contains(id)) return false;
     values_[id.index] = T();
-    if (++generations_[id.index] != kRetired) free_.push_back(id.index);
+    if (++generations_[id.index] != kRetired) free_.add(id.index);
     --size_;
     return true;
   }
@@ -110,44 +178,38 @@ class SlotMap {
   void clear() {
     values_.clear();
     generations_.clear();
-    free_.clear();
+    free_.reset(0);
     size_ = 0;
   }
 
-  /// The state for writing: all three belong to it. One value per slot, T() where the slot is free.
+  /// The state for writing: both belong to it. One value per slot, T() where the slot is free.
   const std::vector<T>& values() const { return values_; }
   const std::vector<std::uint32_t>& generations() const { return generations_; }
-  /// Free slots, the next one to be used last.
-  const std::vector<std::uint32_t>& freeList() const { return free_; }
 
   /// Takes over a state as the accessors gave it. False, and nothing changed, unless there is one generation
-  /// per value and the free list names each free slot that is not retired exactly once. Values of free slots
-  /// are set to T().
-  [[nodiscard]] bool restore(std::vector<T> values, std::vector<std::uint32_t> generations,
-                             std::vector<std::uint32_t> freeList) {
+  /// per value, each below kRetired + 1. Values of free slots are set to T().
+  [[nodiscard]] bool restore(std::vector<T> values, std::vector<std::uint32_t> generations) {
     if (values.size() != generations.size() || values.size() >= IdType::kNoIndex) return false;
-    std::vector<bool> listed(values.size(), false);
-    for (const std::uint32_t slot : freeList) {
-      if (slot >= values.size() || listed[slot]) return false;
-      listed[slot] = true;
-    }
     std::uint32_t used = 0;
-    for (std::size_t slot = 0; slot < values.size(); ++slot) {
-      const bool live = (generations[slot] & 1) != 0;
-      const bool reusable = !live && generations[slot] != kRetired;
-      if (listed[slot] != reusable) return false;
-      if (live) ++used;
-      if (!live) values[slot] = T();
+    for (const std::uint32_t generation : generations) {
+      if (generation > kRetired) return false;
+      used += generation & 1;
     }
     values_ = std::move(values);
     generations_ = std::move(generations);
-    free_ = std::move(freeList);
-    free_.reserve(values_.capacity());
+    free_.reset(slots());
+    for (std::uint32_t slot = 0; slot < slots(); ++slot) {
+      if (aliveAt(slot)) continue;
+      values_[slot] = T();
+      if (generations_[slot] != kRetired) free_.add(slot);
+    }
     size_ = used;
     return true;
   }
 
-  friend bool operator==(const SlotMap&, const SlotMap&) = default;
+  friend bool operator==(const SlotMap& a, const SlotMap& b) {
+    return a.generations_ == b.generations_ && a.values_ == b.values_;
+  }
 
  private:
   static IdType makeId(std::uint32_t index, std::uint32_t generation) {
@@ -159,7 +221,7 @@ class SlotMap {
 
   std::vector<T> values_;
   std::vector<std::uint32_t> generations_;
-  std::vector<std::uint32_t> free_;
+  FreeSlots free_;  // not state: follows from the generations
   std::uint32_t size_ = 0;
 };
 

@@ -161,17 +161,31 @@ struct WorldState {
   std::vector<HandlerBinding> handlers;
 };
 
-/// A world kept in memory, by Space::save. Reusing one makes saving free of allocation.
+template <Scalar S>
+struct SpaceCache;
+
+/// A world kept in memory, by Space::save, with what its Space had computed from it. Reusing one makes saving
+/// free of allocation.
 template <Scalar S>
 class SavedSpace {
  public:
+  SavedSpace();
+  SavedSpace(const SavedSpace& other);
+  SavedSpace(SavedSpace&& other) noexcept;
+  SavedSpace& operator=(const SavedSpace& other);
+  SavedSpace& operator=(SavedSpace&& other) noexcept;
+  ~SavedSpace();
+
   /// The step it was saved after.
   std::uint64_t stamp() const { return state_.stamp; }
   const WorldState<S>& state() const { return state_; }
+  /// How much memory it copies, bytes.
+  std::uint64_t bytes() const;
 
  private:
   friend class Space<S>;
   WorldState<S> state_;
+  SpaceCache<S>* cache_;  ///< Null only after a move.
 };
 
 /// A point query's answer.
@@ -283,10 +297,20 @@ class Space {
   /// @throws DuplicateBody, AttachedBody, SpaceLocked; IllegalBody outside the world extent
   /// MIS: spaceAddBody
   BodyId add(const Body<S>& body);
+  /// The same under an id of the caller's choice. Worlds whose objects all have given ids are the same, bit
+  /// by bit, whatever the order in which objects came and went; see docs/determinism.md.
+  /// @param id  its index below 2^16, better near 0: a world takes room for all indices up to its highest;
+  /// its
+  ///            generation odd and higher than any its slot has had, 1 for the first
+  /// @throws as add; IndexOutOfBounds, IllegalId
+  BodyId add(const Body<S>& body, BodyId id);
   /// Takes in a copy, on the body the shape names; a shape with mass adds it to a dynamic body.
   /// @throws DuplicateShape, AttachedShape, BodyNotFound, IllegalBody, SizeOutOfRange, SpaceLocked
   /// MIS: spaceAddShape, bodyAddShape
   ShapeId add(const Shape<S>& shape);
+  /// The same under an id of the caller's choice, as for bodies.
+  /// @throws as add; IndexOutOfBounds, IllegalId
+  ShapeId add(const Shape<S>& shape, ShapeId id);
   /// @throws BodyNotFound, MainStaticBody, BodyHasShapes, SpaceLocked
   /// MIS: spaceRemoveBody
   void remove(BodyId id);
@@ -439,7 +463,8 @@ class Space {
 
   /// One step of dt seconds, in [0, 1]; 0 does nothing.
   /// @throws SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
-  ///         MissingCallback for a number without function
+  ///         MissingCallback for a number without function; UnsoundArithmetic for double in another mode of
+  ///         the processor
   /// MIS: spaceStep
   void step(S dt);
 
@@ -534,6 +559,7 @@ class Space {
   /// Brings in a whole state, as save does; the caller answers for it being one that a Space can have.
   /// @throws SpaceLocked, ForeignWorld, MissingCallback
   void adopt(const WorldState<S>& state);
+  void adopt(WorldState<S>&& state);
   /// Forgets everything that can be computed again. Changes no result.
   /// @throws SpaceLocked
   void dropCache();
@@ -638,8 +664,13 @@ class Space {
   void requireCallbacks(const Body<S>& body) const;
   template <class Collect>
   void collectFound(Collect&& collect);
-  MassProperties<S> massOfShapes(BodyId id, ShapeId replaced, const Shape<S>* by) const;
+  MassProperties<S> massOfShapes(BodyId id, std::uint32_t replaced, const Shape<S>* by) const;
+  void checkNew(const Body<S>& body) const;
+  void attach(BodyId id);
+  void insert(const Shape<S>& shape, ShapeId id);
   void bind(const HandlerBinding& binding);
+  void checkAdoptable(const WorldState<S>& state) const;
+  void takeOver();
   void checkShape(const Shape<S>& shape, const Body<S>& body) const;
 
   WorldState<S> state_;
@@ -652,9 +683,12 @@ class Space {
 };
 
 #ifndef SAMESTEP_FIXED_ONLY
+extern template class SavedSpace<double>;
 extern template class Space<double>;
 #endif
+extern template class SavedSpace<Fixed>;
 extern template class Space<Fixed>;
+extern template class SavedSpace<CheckedFixed>;
 extern template class Space<CheckedFixed>;
 
 }  // namespace samestep

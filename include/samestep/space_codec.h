@@ -17,13 +17,19 @@ struct WorldLimits {
   std::uint32_t handlers = 1u << 12;
 };
 
-/// Appends the canonical bytes of a world: little-endian, field by field, the same everywhere.
+/// Writes the bytes of a world as snapshots and recordings hold it: little-endian, field by field, the same
+/// everywhere, with what a number shares with the record before left out; see docs/formats.md.
+/// @return how many bytes that is; where `into` has less room, its content is of no use
+template <Scalar S>
+std::uint64_t encodeWorld(const WorldState<S>& world, std::span<std::uint8_t> into);
+/// Appends them.
 template <Scalar S>
 void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes);
 
 /// Reads a world from `offset` on and moves it past. Whatever the bytes are, the world is one a Space can
-/// have, fit for Space::adopt, or there is none; memory is taken for what has been read only.
-/// @throws FormatError
+/// have, fit for Space::adopt, or there is none; memory is taken for no more objects than the limits allow
+/// and the bytes left could tell of.
+/// @throws FormatError, UnsoundArithmetic
 template <Scalar S>
 WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset,
                           const WorldLimits& limits = {});
@@ -33,15 +39,19 @@ template <Scalar S>
 const char* flawOf(const WorldState<S>& world, const WorldLimits& limits = {});
 
 #ifndef SAMESTEP_FIXED_ONLY
+extern template std::uint64_t encodeWorld<double>(const WorldState<double>&, std::span<std::uint8_t>);
 extern template void encodeWorld<double>(const WorldState<double>&, std::vector<std::uint8_t>&);
 extern template WorldState<double> decodeWorld<double>(std::span<const std::uint8_t>, std::uint64_t&,
                                                        const WorldLimits&);
 extern template const char* flawOf<double>(const WorldState<double>&, const WorldLimits&);
 #endif
+extern template std::uint64_t encodeWorld<Fixed>(const WorldState<Fixed>&, std::span<std::uint8_t>);
 extern template void encodeWorld<Fixed>(const WorldState<Fixed>&, std::vector<std::uint8_t>&);
 extern template WorldState<Fixed> decodeWorld<Fixed>(std::span<const std::uint8_t>, std::uint64_t&,
                                                      const WorldLimits&);
 extern template const char* flawOf<Fixed>(const WorldState<Fixed>&, const WorldLimits&);
+extern template std::uint64_t encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&,
+                                                        std::span<std::uint8_t>);
 extern template void encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&, std::vector<std::uint8_t>&);
 extern template WorldState<CheckedFixed> decodeWorld<CheckedFixed>(std::span<const std::uint8_t>,
                                                                    std::uint64_t&, const WorldLimits&);

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: MIT
-// What scripts/platforms runs on each platform: runner [--recorded] [--ticks N] [--kernel NAME] [--workers N]
-// RECORDING...
-// Other options are refused.
-// Prints a line about the platform, then one for each tick of each recording: its name, the tick, the hash of
-// the world after it, computed here; with --recorded the hash that the recording carries. Output goes through
-// printf, as <iostream> would be most of the program.
+// What scripts/platforms runs on each platform: runner [OPTION]... FILE...
+// Prints a line about the platform, then lines of a name, a tick and a hash. The name is
+//   fingerprint.SCALAR: at tick 0, the fingerprint;
+//   RECORDING: for each tick of a recording, the hash of the world after it, computed here, or with
+//   --recorded that which the recording carries; RECORDING@saved: at the tick of --save-at, the hash of the
+//   bytes of a snapshot; RECORDING@TICK, a file with the snapshot of that tick, as --write leaves it: the
+//   same for the recording played on from there.
+// Options: --recorded, --ticks N, --save-at TICK, --write (the snapshots, beside the recordings), --kernel NAME,
+// --workers N; others are refused. Output goes through printf, as <iostream> would be most of the program.
 #include <bit>
 #include <cinttypes>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include <samestep/fingerprint.h>
 #include <samestep/named_handlers.h>
 #include <samestep/replay.h>
+#include <samestep/snapshot.h>
 #include <samestep/version.h>
 #include <samestep/workers.h>
 
@@ -45,34 +51,99 @@ std::string_view nameOf(std::string_view path) {
 
 struct Options {
   bool recorded = false;
+  bool write = false;
   std::uint64_t ticks = ~std::uint64_t{0};
+  std::uint64_t saveAt = 0;
   KernelTarget kernel = KernelTarget::best;
   int workers = 1;
 };
 
+void printHash(std::string_view name, std::uint64_t tick, std::uint64_t hash) {
+  std::printf("%.*s %" PRIu64 " %016" PRIx64 "\n", static_cast<int>(name.size()), name.data(), tick, hash);
+}
+
+/// FNV-1a: another one than that of the snapshot's own checksum.
+std::uint64_t hashOfBytes(const std::vector<std::uint8_t>& bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
+  return hash;
+}
+
 template <Scalar S>
-void run(std::string_view name, const std::vector<std::uint8_t>& bytes, const Options& options) {
+void save(const std::string& path, const Space<S>& space, const Options& options) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(saveSnapshot(space, {})));
+  saveSnapshot(space, bytes);
+  printHash(std::string(nameOf(path)) + "@saved", options.saveAt, hashOfBytes(bytes));
+  if (!options.write) return;
+  const std::string into = path + "@" + std::to_string(options.saveAt);
+  std::FILE* file = std::fopen(into.c_str(), "wb");
+  if (file == nullptr || std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() ||
+      std::fclose(file) != 0) {
+    stop(into.c_str(), "cannot be written");
+  }
+}
+
+template <Scalar S>
+void play(const std::string& path, const std::vector<std::uint8_t>& bytes, const Options& options) {
   WorkerPool pool(options.workers);
   Replay<S> replay(bytes, namedHandlerWiring<S>());
   replay.space().setWorkers(&pool, Sharing::always);
   replay.space().forceKernel(options.kernel);
   while (replay.tick() < options.ticks && replay.step()) {
-    const std::uint64_t hash = options.recorded ? replay.recordedHash() : replay.space().hash();
-    std::printf("%.*s %" PRIu64 " %016" PRIx64 "\n", static_cast<int>(name.size()), name.data(),
-                replay.tick(), hash);
+    printHash(nameOf(path), replay.tick(), options.recorded ? replay.recordedHash() : replay.space().hash());
+    if (replay.tick() == options.saveAt) save(path, replay.space(), options);
   }
 }
 
-void runFile(const char* path, const Options& options) {
-  const std::vector<std::uint8_t> bytes = readFile(path);
-  if (recordingInfo(bytes).scalar == ScalarKind::fixed) {
-    run<Fixed>(nameOf(path), bytes, options);
+/// Plays a recording from the step after the one of the snapshot.
+template <Scalar S>
+void playOn(const std::string& path, const std::vector<std::uint8_t>& recording, const Options& options) {
+  const Wiring<S> wiring = namedHandlerWiring<S>();
+  Space<S> space;
+  wiring.connect(space, wiring.data);
+  loadSnapshot(space, readFile(path.c_str()));
+  WorkerPool pool(options.workers);
+  space.setWorkers(&pool, Sharing::always);
+  space.forceKernel(options.kernel);
+  const std::uint64_t start = space.stamp();
+  RecordingReader<S> reader(recording);
+  std::uint64_t tick = 0;
+  for (RecordingItem item = reader.next(); item != RecordingItem::end && tick < options.ticks;
+       item = reader.next()) {
+    if (item == RecordingItem::step) ++tick;
+    if (item == RecordingItem::command && tick >= start) apply(space, reader.command(), wiring);
+    if (item != RecordingItem::step || tick <= start) continue;
+    space.step(reader.timeStep());
+    printHash(nameOf(path), tick, space.hash());
+  }
+}
+
+template <Scalar S>
+void run(const std::string& path, const std::vector<std::uint8_t>& recording, const Options& options) {
+  if (path.find('@') == std::string::npos) {
+    play<S>(path, recording, options);
+  } else {
+    playOn<S>(path, recording, options);
+  }
+}
+
+void runFile(const std::string& path, const Options& options) {
+  const std::vector<std::uint8_t> recording = readFile(path.substr(0, path.find('@')).c_str());
+  if (recordingInfo(recording).scalar == ScalarKind::fixed) {
+    run<Fixed>(path, recording, options);
     return;
   }
 #ifndef SAMESTEP_FIXED_ONLY
-  run<double>(nameOf(path), bytes, options);
+  run<double>(path, recording, options);
 #else
-  stop(path, "this build has no double");
+  stop(path.c_str(), "this build has no double");
+#endif
+}
+
+void printFingerprints() {
+  printHash("fingerprint.fixed", 0, fingerprint<Fixed>());
+#ifndef SAMESTEP_FIXED_ONLY
+  printHash("fingerprint.double", 0, fingerprint<double>());
 #endif
 }
 
@@ -91,10 +162,15 @@ void describePlatform() {
 int main(int argumentCount, char** arguments) {
   samestep::Options options;
   samestep::describePlatform();
+  samestep::printFingerprints();
   for (int i = 1; i < argumentCount; ++i) {
     const std::string_view argument = arguments[i];
     if (argument == "--recorded") {
       options.recorded = true;
+    } else if (argument == "--write") {
+      options.write = true;
+    } else if (argument == "--save-at" && i + 1 < argumentCount) {
+      options.saveAt = std::strtoull(arguments[++i], nullptr, 10);
     } else if (argument == "--ticks" && i + 1 < argumentCount) {
       options.ticks = std::strtoull(arguments[++i], nullptr, 10);
     } else if (argument == "--kernel" && i + 1 < argumentCount) {

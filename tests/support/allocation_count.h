@@ -12,12 +12,15 @@ namespace samestep {
 
 /// Calls of operator new since the program began.
 inline std::uint64_t allocationCount = 0;
+/// What they asked for, bytes.
+inline std::uint64_t allocatedBytes = 0;
 
 }  // namespace samestep
 
 // Not inlined, or gcc takes malloc and operator delete for a mismatched couple.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++samestep::allocationCount;
+  samestep::allocatedBytes += size;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }

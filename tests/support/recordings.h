@@ -44,6 +44,15 @@ Spawn<S> discToSpawn() {
   return spawn;
 }
 
+/// The same with ids of the caller's choice.
+template <Scalar S>
+Spawn<S> underGivenIds(Spawn<S> spawn, BodyId body, ShapeId shape) {
+  spawn.id = body;
+  spawn.body.setPosition({S(-6), S(5)});
+  spawn.shapes[0].attach(shape, 0);
+  return spawn;
+}
+
 /// A floor, two boxes on it and one above.
 template <Scalar S>
 BodyId fillSmall(Space<S>& space) {
@@ -75,6 +84,7 @@ Bytes recordSmallMatch(std::uint32_t ticks = 24) {
     if (tick == 7) recorder.apply(UserInput{{7, 8, 9}});
     if (tick == 8) recorder.apply(SetPosition<S>{spawned, {S(4), S(3)}});
     if (tick == 9) recorder.apply(SetAngle<S>{spawned, S(1)});
+    if (tick == 10) recorder.apply(underGivenIds(discToSpawn<S>(), {12, 3}, {9, 1}));
     if (tick == 20) recorder.apply(Remove{spawned});
     recorder.step();
   }

@@ -103,6 +103,8 @@ template <Scalar S>
 struct Spawn {
   Body<S> body{};
   std::vector<Shape<S>> shapes;
+  /// The id it shall have; each shape then carries its own. Not valid(): the world gives all of them.
+  BodyId id{};
 };
 
 /// Takes a body and its shapes away.

@@ -12,7 +12,7 @@ namespace samestep {
 // A recording: a world, what happened to it tick by tick, and the hash of the world after every tick. It
 // needs nothing else to be replayed. docs/formats.md tells every byte.
 
-inline constexpr std::uint32_t kRecordingVersion = 1;
+inline constexpr std::uint32_t kRecordingVersion = 2;
 
 /// What the first bytes of a recording say.
 struct RecordingInfo {
