@@ -6,7 +6,8 @@
 //   --recorded that which the recording carries; RECORDING@saved: at the tick of --save-at, the hash of the
 //   bytes of a snapshot; RECORDING@TICK, a file with the snapshot of that tick, as --write leaves it: the
 //   same for the recording played on from there.
-// Options: --recorded, --ticks N, --save-at TICK, --write (the snapshots, beside the recordings), --kernel NAME,
+// Options: --recorded, --ticks N, --save-at TICK, --write (the snapshots, beside the recordings), --kernel
+// NAME,
 // --workers N; others are refused. Output goes through printf, as <iostream> would be most of the program.
 #include <bit>
 #include <cinttypes>
