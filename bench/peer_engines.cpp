@@ -19,8 +19,12 @@ std::unique_ptr<World> makeSamestep(const std::string& engine, const PeerScene& 
                                     std::unique_ptr<World> (*make)(const PeerScene&, SolverChoice)) {
   const std::pair<const char*, SolverChoice> kinds[] = {
       {"impulses", {}}, {"soft", {true, false, 0}}, {"fast", {true, true, 0}}};
+  const std::size_t mark = engine.rfind('x');
+  const bool shared = mark != std::string::npos && mark > std::string(prefix).size();
   for (auto [kind, choice] : kinds) {
-    choice.count = countAfter(engine, std::string(prefix) + kind);
+    choice.count = countAfter(engine.substr(0, shared ? mark : engine.size()), std::string(prefix) + kind);
+    choice.workers = shared ? countAfter(engine.substr(mark), "x") : 1;
+    if (choice.workers == 0) return nullptr;
     if (choice.count > 0) return make(scene, choice);
   }
   return nullptr;

@@ -29,7 +29,8 @@ class World {
 struct SolverChoice {
   bool soft = false;
   bool fast = false;  ///< The soft step at fast precision.
-  int count = 10;  ///< Substeps of the soft step, or iterations of the sequential impulses.
+  int count = 10;     ///< Substeps of the soft step, or iterations of the sequential impulses.
+  int workers = 1;    ///< Threads.
 };
 
 std::unique_ptr<World> makeDouble(const PeerScene& scene, SolverChoice solver);
@@ -39,7 +40,7 @@ std::unique_ptr<World> makeBox2d(const PeerScene& scene);
 
 /// The scene in the engine of that name: `chipmunk` (10 iterations; `chipmunkN` for N), `box2d24` (8 velocity
 /// and 3 position iterations), `samestep-double-impulsesN`, `samestep-double-softN` (N substeps), and the
-/// same with `fixed`. Null if there is no such engine.
+/// same with `fixed`; these also with `xN` for N workers. Null if there is no such engine.
 std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene);
 
 }  // namespace samestep::bench

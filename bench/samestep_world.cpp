@@ -3,6 +3,7 @@
 #include <samestep/decimal.h>
 #include <samestep/poly_shape.h>
 #include <samestep/space.h>
+#include <samestep/workers.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -23,7 +24,8 @@ S exactly(const std::string& text) {
 template <Scalar S>
 class SamestepWorld : public World {
  public:
-  SamestepWorld(const PeerScene& scene, SolverChoice solver) {
+  SamestepWorld(const PeerScene& scene, SolverChoice solver) : pool_(solver.workers) {
+    if (solver.workers > 1) space_.setWorkers(&pool_);
     if (solver.soft) {
       space_.setSolver(SolverKind::softStep);
       space_.setSubsteps(solver.count);
@@ -78,6 +80,7 @@ class SamestepWorld : public World {
     return polyShapeRaw<S>(body, vertices, S(0));
   }
 
+  WorkerPool pool_;
   Space<S> space_;
   std::vector<BodyId> bodies_;
 };

@@ -15,6 +15,7 @@ struct Method {
   const char* name;    ///< As charts and tables call it; no commas.
   const char* scalar;  ///< "double" or "fixed".
   SolverKind solver;
+  ContactPrecision precision;
   const char* unit;             ///< What its count counts: "iterations" or "substeps".
   std::span<const int> counts;  ///< What a chart sweeps.
   std::span<const int> limits;  ///< Whose limits are looked for: usual, and thorough.

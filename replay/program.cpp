@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include <samestep/error.h>
+#include <samestep/workers.h>
 
 namespace samestep::program {
 namespace {
@@ -26,6 +27,28 @@ void addScalarOption(CLI::App& app, std::string& scalar) {
 #endif
   app.add_option("--scalar", scalar, "The number type that the world is computed with")
       ->check(CLI::IsMember(names))
+      ->capture_default_str();
+}
+
+KernelTarget ComputeOptions::target() const {
+  KernelTarget target = KernelTarget::best;
+  findKernel(kernel, target);
+  if (isAvailable(target)) return target;
+  std::string reason = "this build or this processor has no kernel \"" + kernel + "\"; it has";
+  for (const KernelTarget available : availableKernels()) reason += std::string(" ") + kernelName(available);
+  throw Unusable(reason);
+}
+
+void addComputeOptions(CLI::App& app, ComputeOptions& options) {
+  std::vector<std::string> names;
+  for (const KernelTarget target : kKernelTargets) names.emplace_back(kernelName(target));
+  app.add_option("--kernel", options.kernel,
+                 "The processor instructions to solve contacts with; no hash differs")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  app.add_option("--workers", options.workers,
+                 "How many threads share all that can be shared; no hash differs")
+      ->check(CLI::Range(1, WorkerPool::kMostWorkers))
       ->capture_default_str();
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <samestep/kernel.h>
 #include <samestep/scalar.h>
 
 namespace samestep::program {
@@ -46,6 +47,17 @@ void addScalarOption(CLI::App& app, std::string& scalar);
 
 /// Adds --ticks; 0 stands for not given.
 void addTicksOption(CLI::App& app, std::uint64_t& ticks);
+
+/// Who computes: no result depends on it.
+struct ComputeOptions {
+  std::string kernel = "best";
+  int workers = 1;
+  /// @throws Unusable where the build or the processor lacks it
+  KernelTarget target() const;
+};
+
+/// Adds --kernel and --workers.
+void addComputeOptions(CLI::App& app, ComputeOptions& options);
 
 /// Calls visit(S()) for the scalar of that name.
 /// @throws Unusable where this build lacks it

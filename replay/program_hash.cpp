@@ -3,6 +3,7 @@
 
 #include <samestep/high_water.h>
 #include <samestep/scene.h>
+#include <samestep/workers.h>
 
 #include "program.h"
 
@@ -15,6 +16,7 @@ struct Options {
   std::uint64_t ticks = 0;
   std::uint64_t every = 1;
   bool highWater = false;
+  ComputeOptions compute;
 };
 
 void printHighWater() {
@@ -28,7 +30,10 @@ template <Scalar S>
 int run(const Options& options) {
   const SceneSource source = SceneSource::find(options.scene);
   const std::uint64_t ticks = options.ticks > 0 ? options.ticks : source.summary().ticks;
+  WorkerPool pool(options.compute.workers);
   Scene<S> scene(source);
+  scene.space().forceKernel(options.compute.target());
+  scene.space().setWorkers(&pool, Sharing::always);
   Progress progress("hash", ticks);
   for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
     try {
@@ -61,6 +66,7 @@ void addHash(CLI::App& app, int& result) {
   word->add_option("--every", options->every, "Print only every K-th tick")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str();
+  addComputeOptions(*word, options->compute);
   word->add_flag("--high-water", options->highWater,
                  "With --scalar checked: print the largest value that each formula of the engine had");
   word->callback([options, &result] {

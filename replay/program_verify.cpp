@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include <samestep/verify.h>
+#include <samestep/workers.h>
 
 #include "program.h"
 
@@ -26,12 +27,14 @@ void report(const std::string& file, const VerifyResult& result, std::int64_t mi
       static_cast<unsigned long long>(perSecond), static_cast<unsigned long long>(perSecond / 60));
 }
 
-int verifyFile(const std::string& file) {
+int verifyFile(const std::string& file, KernelTarget kernel, TaskRunner& workers) {
   try {
     const std::vector<std::uint8_t> bytes = readFile(file);
     Progress progress("verify", 0);
     VerifyOptions options;
     options.data = &progress;
+    options.kernel = kernel;
+    options.workers = &workers;
     options.progress = [](std::uint64_t done, std::uint64_t total, void* data) {
       static_cast<Progress*>(data)->at(done, total);
       return true;
@@ -55,9 +58,13 @@ void addVerify(CLI::App& app, int& result) {
       "verify", "Replay recordings and check that every tick comes out as it was recorded");
   auto files = std::make_shared<std::vector<std::string>>();
   word->add_option("FILE", *files, "Recordings, as 'samestep record' or a game wrote them")->required();
-  word->callback([files, &result] {
+  auto compute = std::make_shared<ComputeOptions>();
+  addComputeOptions(*word, *compute);
+  word->callback([files, compute, &result] {
+    const KernelTarget kernel = compute->target();
+    WorkerPool pool(compute->workers);
     result = kGood;
-    for (const std::string& file : *files) result = std::max(result, verifyFile(file));
+    for (const std::string& file : *files) result = std::max(result, verifyFile(file, kernel, pool));
   });
 }
 

@@ -11,6 +11,8 @@ template <Scalar S>
 VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
                     const VerifyOptions& options) {
   Replay<S> replay(bytes, wiring, options.limits);
+  replay.space().forceKernel(options.kernel);
+  replay.space().setWorkers(options.workers, Sharing::always);
   VerifyResult result;
   result.ticks = replay.ticks();
   do {

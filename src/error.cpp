@@ -108,6 +108,8 @@ const char* message(Fault fault) {
       return "The saved state belongs to another kind of world.";
     case Fault::MalformedBytes:
       return "These bytes are not what they should be.";
+    case Fault::KernelUnavailable:
+      return "This build or this processor does not have that kernel.";
   }
   return "Unknown fault.";
 }

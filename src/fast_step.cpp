@@ -18,11 +18,10 @@ constexpr int kMostSpeedBits = 26;
 constexpr int kMostWayBits = 14;
 constexpr int kLeastRadiusBits = -16, kMostRadiusBits = 24;
 
-ContactPasses<FastNumbers> fastPasses() {
-#if defined(__x86_64__) || defined(__i386__)
-  if (kernels::fastAvx2 != nullptr && __builtin_cpu_supports("avx2")) return *kernels::fastAvx2;
-  if (kernels::fastSse42 != nullptr && __builtin_cpu_supports("sse4.2")) return *kernels::fastSse42;
-#endif
+ContactPasses<FastNumbers> fastPasses(KernelTarget target) {
+  if (target == KernelTarget::avx2 && kernels::fastAvx2 != nullptr) return *kernels::fastAvx2;
+  if (target == KernelTarget::neon && kernels::fastNeon != nullptr) return *kernels::fastNeon;
+  if (target == KernelTarget::sse42 && kernels::fastSse42 != nullptr) return *kernels::fastSse42;
   return kernels::fastBy1;
 }
 
@@ -48,21 +47,44 @@ bool fits(std::int64_t x) { return x == std::int64_t{narrow(x)}; }
 }  // namespace
 
 template <class S>
-FastSolver<S>::FastSolver() : passes_(fastPasses()) {}
+FastSolver<S>::FastSolver() : passes_(fastPasses(nextBestKernel(KernelTarget::best))) {}
 
 template <class S>
-bool FastSolver<S>::run(Solver& solver, int substeps) {
+void FastSolver<S>::setKernel(KernelTarget target) {
+  passes_ = fastPasses(target);
+}
+
+template <class S>
+void FastSolver<S>::makeRoom(const Solver& solver) {
+  reach_.assign(solver.bodies.size(), 0);
+  radiusBits_.resize(solver.bodies.size());
+  bodies_.resize(solver.bodies.size());
+  drives_.resize(solver.bodies.size());
+  blocks_.resize(solver.blockCount);
+  rests_.resize(solver.blockCount);
+}
+
+template <class S>
+bool FastSolver<S>::run(Solver& solver, int substeps, Crew& crew) {
+  const auto bodies = static_cast<std::uint32_t>(bodies_.size());
+  const auto blocks = static_cast<std::uint32_t>(blocks_.size());
   chooseScales(solver, substeps);
   if (!takeConstants(solver, substeps)) return false;
-  takeBodies(solver);
-  if (!takeBlocks(solver) || !makeSubsteps(substeps)) return false;
-  giveBack(solver);
+  crew.each(bodies, kBodyGrain,
+            [&](std::uint32_t begin, std::uint32_t end) { takeBodies(solver, begin, end); });
+  Finding misfit;
+  crew.each(blocks, kBlockGrain,
+            [&](std::uint32_t begin, std::uint32_t end) { misfit.note(!takeBlocks(solver, begin, end)); });
+  if (misfit || !makeSubsteps(solver.groups, substeps, crew)) return false;
+  crew.each(bodies, kBodyGrain,
+            [&](std::uint32_t begin, std::uint32_t end) { giveBodiesBack(solver, begin, end); });
+  crew.each(blocks, kBlockGrain,
+            [&](std::uint32_t begin, std::uint32_t end) { giveBlocksBack(solver, begin, end); });
   return true;
 }
 
 template <class S>
 void FastSolver<S>::chooseScales(const Solver& solver, int substeps) {
-  reach_.assign(solver.bodies.size(), 0);
   for (std::uint32_t n = 0; n < solver.blockCount; ++n) {
     const auto& block = solver.blocks[n];
     for (int lane = 0; lane < kBlockLanes; ++lane) {
@@ -75,7 +97,6 @@ void FastSolver<S>::chooseScales(const Solver& solver, int substeps) {
       }
     }
   }
-  radiusBits_.resize(reach_.size());
   int fastest = 0;
   for (std::size_t i = 0; i < reach_.size(); ++i) {
     const int radius = clamp(wholeBits(reach_[i]), kLeastRadiusBits, kMostRadiusBits);
@@ -120,12 +141,12 @@ bool FastSolver<S>::takeConstants(const Solver& solver, int substeps) {
 }
 
 template <class S>
-void FastSolver<S>::takeBodies(const Solver& solver) {
-  bodies_.assign(solver.bodies.size(), {});
-  drives_.assign(solver.bodies.size(), {});
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+void FastSolver<S>::takeBodies(const Solver& solver, std::uint32_t begin, std::uint32_t end) {
+  for (std::uint32_t i = begin; i < end; ++i) {
     const auto& from = solver.drives[i];
     SoftDrive<Numbers>& drive = drives_[i];
+    bodies_[i] = {};
+    drive = {};
     for (int k = 0; k < 3; ++k) {
       const int shift = 32 - speedBits_ - (k == 2 ? radiusBits_[i] : 0);
       bodies_[i].velocity[k] = narrow(shifted(solver.bodies[i].velocity[k].raw(), shift));
@@ -138,10 +159,7 @@ void FastSolver<S>::takeBodies(const Solver& solver) {
 }
 
 template <class S>
-bool FastSolver<S>::takeBlocks(const Solver& solver) {
-  const std::size_t count = solver.blockCount;
-  blocks_.resize(count);
-  rests_.assign(count, {});
+bool FastSolver<S>::takeBlocks(const Solver& solver, std::uint32_t begin, std::uint32_t end) {
   std::int64_t misfit = 0;
   const auto held = [&](std::int64_t x) {
     misfit |= x ^ narrow(x);
@@ -150,9 +168,10 @@ bool FastSolver<S>::takeBlocks(const Solver& solver) {
   const int unitShift = 32 - Numbers::kUnitBits;
   const int speedShift = 32 - speedBits_;
   const int wayShift = 32 - wayBits_;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = begin; i < end; ++i) {
     const auto& from = solver.blocks[i];
     ContactBlock<Numbers>& block = blocks_[i];
+    rests_[i] = {};
     block.points = from.points;
     block.fixedA = from.fixedA;
     block.fixedB = from.fixedB;
@@ -191,27 +210,32 @@ bool FastSolver<S>::takeBlocks(const Solver& solver) {
 }
 
 template <class S>
-bool FastSolver<S>::makeSubsteps(int substeps) {
-  const auto count = static_cast<std::uint32_t>(blocks_.size());
+bool FastSolver<S>::makeSubsteps(const std::vector<BlockGroup>& groups, int substeps, Crew& crew) {
+  const auto count = static_cast<std::uint32_t>(bodies_.size());
+  Finding left;
   const auto pass = [&](ContactPass<Numbers> kernel) {
-    return kernel(blocks_.data(), rests_.data(), count, bodies_.data(), constants_);
+    left.note(passOverGroups(kernel, blocks_, rests_, groups, bodies_, constants_, crew));
   };
   for (int i = 0; i < substeps; ++i) {
-    std::uint64_t left = integrateVelocities();
-    left |= pass(passes_.solve);
-    left |= integratePositions();
-    left |= pass(passes_.relax);
-    if (left != 0) return false;
+    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      left.note(integrateVelocities(begin, end) != 0);
+    });
+    pass(passes_.solve);
+    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      left.note(integratePositions(begin, end) != 0);
+    });
+    pass(passes_.relax);
+    if (left) return false;
   }
   return true;
 }
 
 /// As SoftSolver's.
 template <class S>
-std::uint64_t FastSolver<S>::integrateVelocities() {
+std::uint64_t FastSolver<S>::integrateVelocities(std::uint32_t begin, std::uint32_t end) {
   std::uint64_t left = 0;
   const std::int64_t mostSpeed = min(shifted(kMaxSpeed<S>.raw(), 32 - speedBits_), kMost);
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (std::uint32_t i = begin; i < end; ++i) {
     SoftBody<Numbers>& body = bodies_[i];
     SoftDrive<Numbers>& drive = drives_[i];
     const std::int64_t mostTurn =
@@ -231,9 +255,9 @@ std::uint64_t FastSolver<S>::integrateVelocities() {
 }
 
 template <class S>
-std::uint64_t FastSolver<S>::integratePositions() {
+std::uint64_t FastSolver<S>::integratePositions(std::uint32_t begin, std::uint32_t end) {
   std::uint64_t left = 0;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (std::uint32_t i = begin; i < end; ++i) {
     SoftBody<Numbers>& body = bodies_[i];
     for (int k = 0; k < 3; ++k) {
       const std::int64_t way =
@@ -250,9 +274,9 @@ std::uint64_t FastSolver<S>::integratePositions() {
 }
 
 template <class S>
-void FastSolver<S>::giveBack(Solver& solver) const {
+void FastSolver<S>::giveBodiesBack(Solver& solver, std::uint32_t begin, std::uint32_t end) const {
   const auto add = [](S& to, std::int64_t raw) { to += S::fromRaw(raw); };
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+  for (std::uint32_t i = begin; i < end; ++i) {
     auto& body = solver.bodies[i];
     for (int k = 0; k < 3; ++k) {
       const int turning = k == 2 ? radiusBits_[i] : 0;
@@ -262,8 +286,12 @@ void FastSolver<S>::giveBack(Solver& solver) const {
       body.moved[k] = S::fromRaw(shifted(bodies_[i].moved[k], wayBits_ + turning - 32));
     }
   }
+}
+
+template <class S>
+void FastSolver<S>::giveBlocksBack(Solver& solver, std::uint32_t begin, std::uint32_t end) const {
   const auto sum = [&](std::int64_t x) { return S::fromRaw(shifted(x, speedBits_ - 32)); };
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+  for (std::uint32_t i = begin; i < end; ++i) {
     auto& block = solver.blocks[i];
     auto& rest = solver.rests[i];
     for (int k = 0; k < 2; ++k) {

@@ -15,10 +15,14 @@ class FastSolver {
  public:
   FastSolver();
 
+  /// @param target  one that is available
+  void setKernel(KernelTarget target);
+  /// Takes the memory that run needs.
+  void makeRoom(const SoftSolver<S>& solver);
   /// Makes all substeps and writes speeds, ways and sums back into the solver.
   /// @return false, and nothing written, where a number does not fit or left the range on the way. Depends on
   ///         nothing but the solver: every kernel gives the same answer.
-  bool run(SoftSolver<S>& solver, int substeps);
+  bool run(SoftSolver<S>& solver, int substeps, Crew& crew);
 
  private:
   using Numbers = FastNumbers;
@@ -26,12 +30,13 @@ class FastSolver {
 
   void chooseScales(const Solver& solver, int substeps);
   bool takeConstants(const Solver& solver, int substeps);
-  void takeBodies(const Solver& solver);
-  bool takeBlocks(const Solver& solver);
-  bool makeSubsteps(int substeps);
-  std::uint64_t integrateVelocities();
-  std::uint64_t integratePositions();
-  void giveBack(Solver& solver) const;
+  void takeBodies(const Solver& solver, std::uint32_t begin, std::uint32_t end);
+  bool takeBlocks(const Solver& solver, std::uint32_t begin, std::uint32_t end);
+  bool makeSubsteps(const std::vector<BlockGroup>& groups, int substeps, Crew& crew);
+  std::uint64_t integrateVelocities(std::uint32_t begin, std::uint32_t end);
+  std::uint64_t integratePositions(std::uint32_t begin, std::uint32_t end);
+  void giveBodiesBack(Solver& solver, std::uint32_t begin, std::uint32_t end) const;
+  void giveBlocksBack(Solver& solver, std::uint32_t begin, std::uint32_t end) const;
 
   std::vector<SoftBody<Numbers>> bodies_;
   std::vector<SoftDrive<Numbers>> drives_;
@@ -50,8 +55,10 @@ class FastSolver {
 template <>
 class FastSolver<double> {
  public:
-  bool run(SoftSolver<double>& solver, int substeps) {
-    solver.run(substeps);
+  void setKernel(KernelTarget) {}
+  void makeRoom(const SoftSolver<double>&) {}
+  bool run(SoftSolver<double>& solver, int substeps, Crew& crew) {
+    solver.run(substeps, crew);
     return true;
   }
 };

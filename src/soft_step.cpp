@@ -24,15 +24,13 @@ Softness<S> makeSoftness(S hertz, S dampingRatio, S substep) {
 namespace {
 
 #ifndef SAMESTEP_FIXED_ONLY
-ContactPasses<SolverNumbers<double>> passesFor(double) {
-#if defined(__x86_64__) || defined(__i386__)
-  if (kernels::doubleAvx2 != nullptr && __builtin_cpu_supports("avx2")) return *kernels::doubleAvx2;
-#endif
+ContactPasses<SolverNumbers<double>> passesFor(double, KernelTarget target) {
+  if (target == KernelTarget::avx2 && kernels::doubleAvx2 != nullptr) return *kernels::doubleAvx2;
   return kernels::doubleBy2;
 }
 #endif
 template <FixedNumber S>
-ContactPasses<SolverNumbers<S>> passesFor(S) {
+ContactPasses<SolverNumbers<S>> passesFor(S, KernelTarget) {
   return kPassesOf<ScalarLanes<S>>;
 }
 
@@ -65,7 +63,12 @@ auto spinB(const Block& block, const Axis& axis, int lane) {
 }  // namespace
 
 template <Scalar S>
-SoftSolver<S>::SoftSolver() : passes(passesFor(S())) {}
+SoftSolver<S>::SoftSolver() : passes(passesFor(S(), nextBestKernel(KernelTarget::best))) {}
+
+template <Scalar S>
+void SoftSolver<S>::setKernel(KernelTarget target) {
+  passes = passesFor(S(), target);
+}
 
 template <Scalar S>
 void SoftSolver<S>::clear() {
@@ -73,6 +76,7 @@ void SoftSolver<S>::clear() {
   drives.assign(1, {});
   momentsPerMass.assign(1, S(0));
   freeBodies.clear();
+  groups.clear();
   blockCount = 0;
 }
 
@@ -153,20 +157,24 @@ void SoftSolver<S>::addFree(const Body<S>& body, const SoftDrive<Numbers>& drive
 }
 
 template <Scalar S>
-void SoftSolver<S>::openBlock() {
-  if (blockCount == blocks.size()) {
-    blocks.emplace_back();
-    rests.emplace_back();
-  }
-  Block& block = blocks[blockCount++];
+void SoftSolver<S>::makeRoom() {
+  blockCount = groups.empty() ? 0 : groups.back().end;
+  if (blocks.size() >= blockCount) return;
+  blocks.resize(blockCount);
+  rests.resize(blockCount);
+}
+
+template <Scalar S>
+void SoftSolver<S>::openBlock(std::uint32_t at) {
+  Block& block = blocks[at];
   block.points = block.bounces = block.roundA = block.roundB = block.stiff = 0;
   block.fixedA = block.fixedB = 0;
 }
 
 template <Scalar S>
-void SoftSolver<S>::closeBlock(int lanes) {
-  Block& block = blocks[blockCount - 1];
-  Rest& rest = rests[blockCount - 1];
+void SoftSolver<S>::closeBlock(std::uint32_t at, int lanes) {
+  Block& block = blocks[at];
+  Rest& rest = rests[at];
   for (int lane = lanes; lane < kBlockLanes; ++lane) {
     const auto bit = static_cast<std::uint8_t>(1 << lane);
     block.fixedA = static_cast<std::uint8_t>(block.fixedA | bit);
@@ -182,11 +190,11 @@ void SoftSolver<S>::closeBlock(int lanes) {
 }
 
 template <Scalar S>
-void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
-                            std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA,
-                            bool roundB, S bounceThreshold) {
-  Block& block = blocks[blockCount - 1];
-  Rest& rest = rests[blockCount - 1];
+void SoftSolver<S>::addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex,
+                            std::uint32_t indexA, std::uint32_t indexB, const Body<S>& a, const Body<S>& b,
+                            bool roundA, bool roundB, S bounceThreshold) {
+  Block& block = blocks[at];
+  Rest& rest = rests[at];
   const PairResponse<S> response = respondWith(a, momentsPerMass[indexA], b, momentsPerMass[indexB]);
   const S masses = response.massA + response.massB;
   const bool alone = masses == S(1);
@@ -282,17 +290,22 @@ void SoftSolver<S>::addPair(int lane, const Pair<S>& pair, std::uint32_t pairInd
 }
 
 template <Scalar S>
-void SoftSolver<S>::pass(ContactPass<Numbers> kernel) {
-  kernel(blocks.data(), rests.data(), blockCount, bodies.data(), constants);
+void SoftSolver<S>::pass(ContactPass<Numbers> kernel, Crew& crew) {
+  passOverGroups(kernel, blocks, rests, groups, bodies, constants, crew);
 }
 
 template <Scalar S>
-void SoftSolver<S>::run(int substeps) {
+void SoftSolver<S>::run(int substeps, Crew& crew) {
+  const auto count = static_cast<std::uint32_t>(bodies.size());
   for (int i = 0; i < substeps; ++i) {
-    for (std::size_t k = 0; k < bodies.size(); ++k) integrateVelocity(bodies[k], drives[k]);
-    pass(passes.solve);
-    for (SoftBody<Numbers>& body : bodies) integratePosition(body);
-    pass(passes.relax);
+    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t k = begin; k < end; ++k) integrateVelocity(bodies[k], drives[k]);
+    });
+    pass(passes.solve, crew);
+    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t k = begin; k < end; ++k) integratePosition(bodies[k]);
+    });
+    pass(passes.relax, crew);
   }
 }
 
@@ -318,6 +331,7 @@ void SoftSolver<S>::integratePosition(SoftBody<Numbers>& body) const {
 
 template <Scalar S>
 void SoftSolver<S>::bounce() {
+  if (!bounces) return;
   for (std::uint32_t i = 0; i < blockCount; ++i) {
     Block& block = blocks[i];
     if (block.bounces == 0) continue;
@@ -350,23 +364,28 @@ void SoftSolver<S>::bounce() {
 }
 
 template <Scalar S>
-void SoftSolver<S>::store(std::vector<Pair<S>>& pairs) const {
-  for (std::uint32_t i = 0; i < blockCount; ++i) {
-    const Block& block = blocks[i];
-    const Rest& rest = rests[i];
-    for (int lane = 0; lane < kBlockLanes; ++lane) {
-      if (rest.pair[lane] == Rest::kNoPair) continue;
-      // The lighter body has the larger share.
-      const S lighter = max(block.shareA[lane], S(1) - block.shareA[lane]);
-      Pair<S>& pair = pairs[rest.pair[lane]];
-      for (int k = 0; k < block.count[lane]; ++k) {
-        Contact<S>& contact = pair.contacts[k];
-        contact.normalSpeed = block.point[k].normal.sum[lane] * lighter;
-        contact.tangentSpeed = block.point[k].tangent.sum[lane] * lighter;
-        contact.normalTotal = min(rest.normalTotal[k][lane], kMaxSum<S>) * lighter;
-        contact.tangentTotal = clamp(rest.tangentTotal[k][lane], -kMaxSum<S>, kMaxSum<S>) * lighter;
-        highWater<S>("soft step: impulse total", rest.normalTotal[k][lane]);
-      }
+void SoftSolver<S>::store(std::vector<Pair<S>>& pairs, Crew& crew) const {
+  crew.each(blockCount, kBlockGrain, [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) storeBlock(i, pairs);
+  });
+}
+
+template <Scalar S>
+void SoftSolver<S>::storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const {
+  const Block& block = blocks[at];
+  const Rest& rest = rests[at];
+  for (int lane = 0; lane < kBlockLanes; ++lane) {
+    if (rest.pair[lane] == Rest::kNoPair) continue;
+    // The lighter body has the larger share.
+    const S lighter = max(block.shareA[lane], S(1) - block.shareA[lane]);
+    Pair<S>& pair = pairs[rest.pair[lane]];
+    for (int k = 0; k < block.count[lane]; ++k) {
+      Contact<S>& contact = pair.contacts[k];
+      contact.normalSpeed = block.point[k].normal.sum[lane] * lighter;
+      contact.tangentSpeed = block.point[k].tangent.sum[lane] * lighter;
+      contact.normalTotal = min(rest.normalTotal[k][lane], kMaxSum<S>) * lighter;
+      contact.tangentTotal = clamp(rest.tangentTotal[k][lane], -kMaxSum<S>, kMaxSum<S>) * lighter;
+      highWater<S>("soft step: impulse total", rest.normalTotal[k][lane]);
     }
   }
 }

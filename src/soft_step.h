@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include <samestep/kernel.h>
+
+#include "block_groups.h"
 #include "contact_block.h"
 #include "contact_row.h"
 
@@ -37,6 +40,10 @@ struct SoftSolver {
   std::vector<Block> blocks;
   std::vector<Rest> rests;
   std::uint32_t blockCount = 0;
+  /// Of the blocks, in their order.
+  std::vector<BlockGroup> groups;
+  /// Whether any contact may bounce.
+  bool bounces = false;
   /// Inverse moment times mass of each body, 1/m^2.
   std::vector<S> momentsPerMass;
   SoftConstants<Numbers> constants{};
@@ -44,31 +51,36 @@ struct SoftSolver {
 
   SoftSolver();
 
+  /// @param target  one that is available
+  void setKernel(KernelTarget target);
   /// Forgets the last step.
   void clear();
   /// Adds a body that touches something, and says as which.
   std::uint32_t addBody(const Body<S>& body, const SoftDrive<Numbers>& drive);
   /// Makes all substeps of a body that touches nothing.
   void addFree(const Body<S>& body, const SoftDrive<Numbers>& drive, int substeps);
-  /// Adds a block, whose lanes hold anything.
-  void openBlock();
-  /// Empties the lanes of the last block that hold no pair.
-  void closeBlock(int lanes);
-  /// Puts a pair into a lane of the last block and gives its kept impulses to the bodies.
-  void addPair(int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
+  /// Makes room for the groups, whose blocks are then to be opened.
+  void makeRoom();
+  /// Readies a block, whose lanes hold anything.
+  void openBlock(std::uint32_t at);
+  /// Empties the lanes of a block that hold no pair.
+  void closeBlock(std::uint32_t at, int lanes);
+  /// Puts a pair into a lane of a block and gives its kept impulses to the bodies.
+  void addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
                std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA, bool roundB,
                S bounceThreshold);
   /// Makes all substeps.
-  void run(int substeps);
+  void run(int substeps, Crew& crew);
   /// After the last one: what bounces.
   void bounce();
   /// Writes the impulses back.
-  void store(std::vector<Pair<S>>& pairs) const;
+  void store(std::vector<Pair<S>>& pairs, Crew& crew) const;
 
  private:
   void integrateVelocity(SoftBody<Numbers>& body, SoftDrive<Numbers>& drive) const;
   void integratePosition(SoftBody<Numbers>& body) const;
-  void pass(ContactPass<Numbers> kernel);
+  void pass(ContactPass<Numbers> kernel, Crew& crew);
+  void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
 };
 
 #ifndef SAMESTEP_FIXED_ONLY

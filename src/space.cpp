@@ -589,6 +589,48 @@ void Space<S>::setStageObserver(StageObserver observer, void* data) {
   impl_->observerData = data;
 }
 
+// Who computes.
+
+template <Scalar S>
+void Space<S>::setWorkers(TaskRunner* runner, Sharing sharing) {
+  requireUnlocked();
+  // Checked numbers note their high-water marks in one table, and report by exception.
+  constexpr bool kAlone = requires { requires S::kChecks; };
+  impl_->runner = runner;
+  impl_->crew.set(kAlone ? nullptr : runner, sharing);
+}
+
+template <Scalar S>
+TaskRunner* Space<S>::workers() const {
+  return impl_->runner;
+}
+
+template <Scalar S>
+void Space<S>::setKernel(KernelTarget target) {
+  requireUnlocked();
+  require<Fault::ValueOutOfRange>(target <= KernelTarget::neon);
+  if (!isAvailable(target)) {
+    remarks_.raise(Remark::OtherKernel,
+                   "This build or this processor does not have that kernel: the next best one is taken. No "
+                   "result differs.");
+  }
+  forceKernel(nextBestKernel(target));
+}
+
+template <Scalar S>
+void Space<S>::forceKernel(KernelTarget target) {
+  requireUnlocked();
+  require<Fault::KernelUnavailable>(isAvailable(target));
+  impl_->kernel = nextBestKernel(target);
+  impl_->soft.setKernel(impl_->kernel);
+  impl_->fast.setKernel(impl_->kernel);
+}
+
+template <Scalar S>
+KernelTarget Space<S>::kernel() const {
+  return impl_->kernel;
+}
+
 // Saving.
 
 template <Scalar S>

@@ -126,17 +126,56 @@ void Space<S>::ensureCache() const {
 
 template <Scalar S>
 void Space<S>::placeShapesOf(std::uint32_t bodyIndex) const {
+  if (movePlaced(bodyIndex)) putBoxesOf(bodyIndex);
+}
+
+/// Places the shapes of all bodies that moved. The trees are the stepping thread's.
+template <Scalar S>
+void Space<S>::placeAllShapes() {
+  Impl& impl = *impl_;
+  const std::uint32_t slots = state_.bodies.slots();
+  if (!impl.crew.helpsWith(slots, Impl::kFewBodies)) {
+    for (std::uint32_t i = 0; i < slots; ++i) {
+      if (state_.bodies.aliveAt(i)) placeShapesOf(i);
+    }
+    return;
+  }
+  impl.placedAnew.resize(slots);
+  impl.crew.during(true, [&] {
+    impl.crew.each(slots, Impl::kPlacedGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t i = begin; i < end; ++i) {
+        impl.placedAnew[i] = state_.bodies.aliveAt(i) && movePlaced(i) ? 1 : 0;
+      }
+    });
+  });
+  for (std::uint32_t i = 0; i < slots; ++i) {
+    if (impl.placedAnew[i] != 0) putBoxesOf(i);
+  }
+}
+
+/// Places the shapes of a body; false where they stand already. Writes to nothing but these.
+template <Scalar S>
+bool Space<S>::movePlaced(std::uint32_t bodyIndex) const {
   Impl& impl = *impl_;
   const Body<S>& holder = state_.bodies.valueAt(bodyIndex);
   const PlacedPose<S> pose = PlacedPose<S>::of(holder);
-  if (impl.poses[bodyIndex] == pose) return;
+  if (impl.poses[bodyIndex] == pose) return false;
   impl.poses[bodyIndex] = pose;
-  if (impl.firstShape[bodyIndex] == Impl::kNone) return;
+  if (impl.firstShape[bodyIndex] == Impl::kNone) return false;
   const Transform<S> transform = Transform<S>::rigid(pose.frame.origin, pose.frame.rotation);
+  for (std::uint32_t i = impl.firstShape[bodyIndex]; i != Impl::kNone; i = impl.nextShape[i]) {
+    place(transform, impl.placed[i]);
+  }
+  return true;
+}
+
+template <Scalar S>
+void Space<S>::putBoxesOf(std::uint32_t bodyIndex) const {
+  Impl& impl = *impl_;
+  const Body<S>& holder = state_.bodies.valueAt(bodyIndex);
   const bool isStatic = holder.type() == BodyType::staticBody;
   for (std::uint32_t i = impl.firstShape[bodyIndex]; i != Impl::kNone; i = impl.nextShape[i]) {
-    const BB<S> box = place(transform, impl.placed[i]);
-    impl.putBox(i, isStatic, box, holder.velocity());
+    impl.putBox(i, isStatic, impl.placed[i].box, holder.velocity());
   }
 }
 

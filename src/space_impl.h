@@ -9,6 +9,7 @@
 #include <samestep/space.h>
 
 #include "contact_groups.h"
+#include "crew.h"
 #include "fast_step.h"
 #include "push_contacts.h"
 #include "sequential_impulse.h"
@@ -66,6 +67,9 @@ struct Space<S>::Impl {
   StageObserver observer = nullptr;
   void* observerData = nullptr;
   std::uint32_t serial = 0;
+  TaskRunner* runner = nullptr;
+  Crew crew;
+  KernelTarget kernel = nextBestKernel(KernelTarget::best);
 
   struct PostStep {
     PostStepFunc function;
@@ -118,10 +122,19 @@ struct Space<S>::Impl {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> newPairs;
   bool someLeft = false;
   std::vector<std::uint8_t> held;
+  std::vector<std::uint8_t> placedAnew;
   std::vector<std::uint32_t> found;
   std::vector<std::uint32_t> foundInOne;
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
+  // Of solverIndex: a body that touches nothing, by its place among them.
+  static constexpr std::uint32_t kFree = 0x80000000u;
+  // Fewer pairs, or bodies, are not worth waking other workers for.
+  static constexpr std::uint32_t kFewPairs = 256;
+  static constexpr std::uint32_t kFewBodies = 512;
+  // What a part of the work has at least.
+  static constexpr std::uint32_t kPairGrain = 32;
+  static constexpr std::uint32_t kPlacedGrain = 64;
 
   template <class Entry>
   static const Entry* find(const std::vector<Entry>& entries, CallbackNumber number) {

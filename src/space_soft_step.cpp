@@ -76,6 +76,7 @@ void Space<S>::softTakeBodies(S dt) {
     body.torque_ = S(0);
     if (body.type() == BodyType::staticBody) continue;
     if (impl.solverIndex[i] == Impl::kNone) {
+      impl.solverIndex[i] = Impl::kFree | static_cast<std::uint32_t>(soft.freeBodies.size());
       soft.addFree(body, drive, state_.settings.substeps);
     } else {
       impl.solverIndex[i] = soft.addBody(body, drive);
@@ -88,54 +89,102 @@ template <Scalar S>
 void Space<S>::softTakePairs() {
   Impl& impl = *impl_;
   SoftSolver<S>& soft = impl.soft;
-  std::uint32_t next = 0;
+  std::uint32_t blocks = 0;
   for (std::uint32_t group = 0; group < ContactGroups::kGroups; ++group) {
     // The pairs of the last group may share bodies.
-    const int lanes = group == ContactGroups::kGroups - 1 ? 1 : kBlockLanes;
-    int lane = lanes;
-    for (const std::uint32_t end = next + impl.groups.size(group); next < end; ++next, ++lane) {
-      if (lane == lanes) {
-        soft.openBlock();
-        lane = 0;
-      }
-      const std::uint32_t index = impl.solvedPairs[impl.groupOrder[next]];
-      const Pair<S>& pair = state_.pairs[index];
-      const ShapeTraits<S>& shapeA = impl.traits[pair.a.index];
-      const ShapeTraits<S>& shapeB = impl.traits[pair.b.index];
-      const std::uint32_t a = shapeA.body;
-      const std::uint32_t b = shapeB.body;
-      soft.addPair(lane, pair, index, impl.solverIndex[a], impl.solverIndex[b], state_.bodies.valueAt(a),
-                   state_.bodies.valueAt(b), shapeA.round, shapeB.round, state_.settings.bounceThreshold);
-      if (lane + 1 == lanes || next + 1 == end) soft.closeBlock(lane + 1);
-    }
+    const bool inOrder = group == ContactGroups::kGroups - 1;
+    const std::uint32_t pairs = impl.groups.size(group);
+    const std::uint32_t end = blocks + (inOrder ? pairs : (pairs + kBlockLanes - 1) / kBlockLanes);
+    if (pairs > 0) soft.groups.push_back({blocks, end, inOrder});
+    blocks = end;
   }
+  soft.makeRoom();
+  Finding bounces;
+  impl.crew.during(impl.crew.helpsWith(impl.solvedPairs.size(), Impl::kFewPairs), [&] {
+    std::uint32_t first = 0;
+    std::uint32_t group = 0;
+    for (const BlockGroup& blockGroup : soft.groups) {
+      while (impl.groups.size(group) == 0) ++group;
+      const std::uint32_t pairs = impl.groups.size(group++);
+      const std::uint32_t lanes = blockGroup.inOrder ? 1 : kBlockLanes;
+      const std::uint32_t start = blockGroup.begin;
+      const auto take = [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+          const std::uint32_t from = first + i * lanes;
+          softTakeBlock(start + i, from, min(from + lanes, first + pairs));
+          bounces.note(soft.blocks[start + i].bounces != 0);
+        }
+      };
+      if (blockGroup.inOrder) {
+        take(0, blockGroup.end - start);
+      } else {
+        impl.crew.each(blockGroup.end - start, kBlockGrain, take);
+      }
+      first += pairs;
+    }
+  });
+  soft.bounces = static_cast<bool>(bounces);
+}
+
+/// Puts the pairs from `begin` to `end` of those sorted by group into a block.
+template <Scalar S>
+void Space<S>::softTakeBlock(std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
+  Impl& impl = *impl_;
+  SoftSolver<S>& soft = impl.soft;
+  soft.openBlock(block);
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const std::uint32_t index = impl.solvedPairs[impl.groupOrder[i]];
+    const Pair<S>& pair = state_.pairs[index];
+    const ShapeTraits<S>& shapeA = impl.traits[pair.a.index];
+    const ShapeTraits<S>& shapeB = impl.traits[pair.b.index];
+    const std::uint32_t a = shapeA.body;
+    const std::uint32_t b = shapeB.body;
+    soft.addPair(block, static_cast<int>(i - begin), pair, index, impl.solverIndex[a], impl.solverIndex[b],
+                 state_.bodies.valueAt(a), state_.bodies.valueAt(b), shapeA.round, shapeB.round,
+                 state_.settings.bounceThreshold);
+  }
+  soft.closeBlock(block, static_cast<int>(end - begin));
 }
 
 template <Scalar S>
 void Space<S>::softSolve() {
   SoftSolver<S>& soft = impl_->soft;
   const int substeps = state_.settings.substeps;
-  bool solved = false;
-  if (state_.settings.precision == ContactPrecision::fast && soft.blockCount != 0) {
-    solved = impl_->fast.run(soft, substeps);
-    if (!solved) ++accurateInstead_;
-  }
-  if (!solved) soft.run(substeps);
-  soft.bounce();
-  soft.store(state_.pairs);
+  const bool fast = state_.settings.precision == ContactPrecision::fast && soft.blockCount != 0;
+  if (fast) impl_->fast.makeRoom(soft);
+  Crew& crew = impl_->crew;
+  crew.during(crew.helpsWith(impl_->solvedPairs.size(), Impl::kFewPairs), [&] {
+    const bool solved = fast && impl_->fast.run(soft, substeps, crew);
+    if (fast && !solved) ++accurateInstead_;
+    if (!solved) soft.run(substeps, crew);
+    soft.bounce();
+    soft.store(state_.pairs, crew);
+  });
   endStage(Stage::solve);
 }
 
 template <Scalar S>
 void Space<S>::softFinish(S dt) {
   Impl& impl = *impl_;
-  std::size_t nextFree = 0;
-  for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
+  const std::uint32_t slots = state_.bodies.slots();
+  // Position functions are called in order, and see the bodies before them moved, those after them not.
+  impl.crew.during(impl.positionFuncs.empty() && impl.crew.helpsWith(slots, Impl::kFewBodies), [&] {
+    impl.crew.each(slots, Impl::kPlacedGrain,
+                   [&](std::uint32_t begin, std::uint32_t end) { softFinish(dt, begin, end); });
+  });
+  endStage(Stage::integratePositions);
+}
+
+template <Scalar S>
+void Space<S>::softFinish(S dt, std::uint32_t begin, std::uint32_t end) {
+  Impl& impl = *impl_;
+  for (std::uint32_t i = begin; i < end; ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
     Body<S>& body = state_.bodies.valueAt(i);
     if (body.type() == BodyType::staticBody) continue;
     const std::uint32_t index = impl.solverIndex[i];
-    const auto& solved = index == Impl::kNone ? impl.soft.freeBodies[nextFree++] : impl.soft.bodies[index];
+    const auto& solved =
+        (index & Impl::kFree) != 0 ? impl.soft.freeBodies[index & ~Impl::kFree] : impl.soft.bodies[index];
     if (body.isDynamic()) {
       impl.held[i] |= body.holdVelocity({{solved.velocity[0], solved.velocity[1]}, solved.velocity[2]});
     }
@@ -145,7 +194,6 @@ void Space<S>::softFinish(S dt) {
       impl.held[i] |= body.holdMoved({solved.moved[0], solved.moved[1]}, solved.moved[2], worldExtent());
     }
   }
-  endStage(Stage::integratePositions);
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The step, stage by stage.
 #include <algorithm>
+#include <atomic>
 
 #include "push_contacts.h"
 #include "require_ieee.h"
@@ -134,9 +135,7 @@ template <Scalar S>
 void Space<S>::updateShapes() {
   ensureCache();
   impl_->forgetTouched();
-  for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
-    if (state_.bodies.aliveAt(i)) placeShapesOf(i);
-  }
+  placeAllShapes();
   endStage(Stage::updateShapes);
 }
 
@@ -244,23 +243,58 @@ void Space<S>::mergeNewPairs() {
 template <Scalar S>
 void Space<S>::collidePairs() {
   Impl& impl = *impl_;
+  Crew& crew = impl.crew;
+  const std::uint32_t count = static_cast<std::uint32_t>(state_.pairs.size());
   const bool surfacesKnown = impl.surfacesKnown;
   impl.surfacesKnown = false;
   impl.someLeft = false;
-  for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
-    Pair<S>& pair = state_.pairs[i];
-    if (pair.state == ArbiterState::firstCollision) pair.state = ArbiterState::normal;
-    pair.solved = 0;
-    if (pair.state != ArbiterState::apart && pair.age != 0xffffffffu) ++pair.age;
-    if (impl.overlapping[i] != 0) collidePair(pair, surfacesKnown);
-    if (pair.state != ArbiterState::apart && pair.age != 0) impl.someLeft = true;
+  // Handlers are asked in order, and see the pairs before theirs updated, those after it not.
+  if (!crew.helpsWith(count, Impl::kFewPairs) || !state_.handlers.empty()) {
+    impl.someLeft = collidePairs(0, count, surfacesKnown, collisionStats_);
+  } else {
+    Finding someLeft;
+    std::atomic<std::uint32_t> gjk{0}, gjkToEpa{0}, epa{0};
+    const auto add = [](std::atomic<std::uint32_t>& to, std::uint64_t number) {
+      if (number != 0) to.fetch_add(static_cast<std::uint32_t>(number), std::memory_order_relaxed);
+    };
+    crew.during(true, [&] {
+      crew.each(count, Impl::kPairGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        CollisionStats stats;
+        someLeft.note(collidePairs(begin, end, surfacesKnown, stats));
+        add(gjk, stats.highGjkIterations);
+        add(gjkToEpa, stats.highGjkToEpaIterations);
+        add(epa, stats.highEpaIterations);
+      });
+    });
+    impl.someLeft = static_cast<bool>(someLeft);
+    collisionStats_.highGjkIterations += gjk;
+    collisionStats_.highGjkToEpaIterations += gjkToEpa;
+    collisionStats_.highEpaIterations += epa;
   }
   // What callbacks have set is for this step.
   impl.surfacesKnown = state_.handlers.empty();
 }
 
+/// Those of a range; without handlers this writes to nothing but these pairs.
+/// @return whether any of them touched before and does not now
 template <Scalar S>
-void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown) {
+bool Space<S>::collidePairs(std::uint32_t begin, std::uint32_t end, bool surfacesKnown,
+                            CollisionStats& stats) {
+  const Impl& impl = *impl_;
+  bool someLeft = false;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    Pair<S>& pair = state_.pairs[i];
+    if (pair.state == ArbiterState::firstCollision) pair.state = ArbiterState::normal;
+    pair.solved = 0;
+    if (pair.state != ArbiterState::apart && pair.age != 0xffffffffu) ++pair.age;
+    if (impl.overlapping[i] != 0) collidePair(pair, surfacesKnown, stats);
+    if (pair.state != ArbiterState::apart && pair.age != 0) someLeft = true;
+  }
+  return someLeft;
+}
+
+template <Scalar S>
+void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown, CollisionStats& stats) {
   const Impl& impl = *impl_;
   const ShapeTraits<S>&shapeA = impl.traits[pair.a.index], &shapeB = impl.traits[pair.b.index];
   const PlacedPose<S>&bodyA = impl.poses[shapeA.body], &bodyB = impl.poses[shapeB.body];
@@ -281,7 +315,7 @@ void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown) {
   }
   if (!same) {
     const CollisionInfo<S> info = collide(impl.placed[pair.a.index], impl.placed[pair.b.index],
-                                          pair.collisionId, &collisionStats_, sensor ? S(0) : pairMargin());
+                                          pair.collisionId, &stats, sensor ? S(0) : pairMargin());
     pair.collisionId = info.id;
     pair.pose = pose;
     // Where one point touches a rounded surface, that surface may roll: a point fixed to it would lag behind

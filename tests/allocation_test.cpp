@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A step of a world that has warmed up takes no memory.
 #include <samestep/space.h>
+#include <samestep/workers.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
@@ -11,7 +13,7 @@
 #include "support/world.h"
 
 namespace {
-long allocations = 0;
+std::atomic<long> allocations = 0;
 
 void* counted(std::size_t size) {
   ++allocations;
@@ -62,6 +64,30 @@ TYPED_TEST(AllocationTest, AWarmStepTakesNoMemory) {
   }
 
   EXPECT_EQ(this->countIn(play), 0);
+}
+
+TYPED_TEST(AllocationTest, AWarmStepOfTheSoftStepTakesNoMemoryAloneOrWithWorkers) {
+  using S = TypeParam;
+  for (const ContactPrecision precision : {ContactPrecision::accurate, ContactPrecision::fast}) {
+    for (const int workers : {1, 3}) {
+      WorkerPool pool(workers);
+      Space<S> space;
+      space.setSolver(SolverKind::softStep);
+      space.setPrecision(precision);
+      space.setWorkers(&pool, Sharing::always);
+      for (std::uint64_t seed = 0; seed < 4; ++seed) fillAtRandom(space, seed);
+      const SavedSpace<S> saved = space.save();
+      const auto play = [&] {
+        for (int i = 0; i < 200; ++i) space.step(kTick<S>);
+      };
+      for (int round = 0; round < 2; ++round) {
+        play();
+        space.restore(saved);
+      }
+
+      EXPECT_EQ(this->countIn(play), 0) << workers << " workers";
+    }
+  }
 }
 
 TYPED_TEST(AllocationTest, SavingHashingAndRestoringWithinTheSameRoomTakeNoMemory) {

@@ -73,9 +73,9 @@ TEST_F(ProgramTest, HelpExplainsEachWordAndSucceeds) {
 TEST_F(ProgramTest, UnusableArgumentsExitWithTwoAndSpeakOnTheErrorOutput) {
   for (const char* arguments :
        {"", "dance", "hash", "hash nowhere", "hash stack --scalar float", "hash stack --ticks 0",
-        "hash stack --ticks x", "hash stack --every 0", "record stack",
-        "record stack -o /no/such/folder/file", "verify", "verify /no/such/file", "diff one",
-        "draw stack -o x.svg", "draw stack --tick -1 -o x.svg"}) {
+        "hash stack --ticks x", "hash stack --every 0", "hash stack --workers 0",
+        "hash stack --kernel fastest", "record stack", "record stack -o /no/such/folder/file", "verify",
+        "verify /no/such/file", "diff one", "draw stack -o x.svg", "draw stack --tick -1 -o x.svg"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
     EXPECT_EQ(outcome.out, "") << arguments;
@@ -105,6 +105,7 @@ TEST_F(ProgramTest, HashPrintsTickAndHashOfEveryTick) {
   EXPECT_THAT(outcome.out, MatchesRegex("1 [0-9a-f]{16}\n2 [0-9a-f]{16}\n3 [0-9a-f]{16}\n"));
   EXPECT_THAT(run("hash stack --ticks 7 --every 3").out, MatchesRegex("3 [0-9a-f]{16}\n6 [0-9a-f]{16}\n"));
   EXPECT_EQ(run("hash stack --ticks 3 --scalar checked").out, outcome.out);
+  EXPECT_EQ(run("hash stack --ticks 3 --kernel portable --workers 3").out, outcome.out);
 }
 
 TEST_F(ProgramTest, RecordsVerifiesAndFindsWhatWasAltered) {

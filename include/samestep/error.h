@@ -58,6 +58,7 @@ enum class Fault : std::uint8_t {
   MissingCallback,  ///< A callback number without a registered function.
   ForeignWorld,     ///< A saved state of another kind of world.
   MalformedBytes,   ///< Bytes from outside that are not what they should be; see FormatError.
+  KernelUnavailable,  ///< A forced kernel that was not built or that this processor cannot run.
 };
 
 /// The sentence a user reads: the MIS's own where it has one. MIS: message
@@ -131,6 +132,7 @@ using BodyHasShapes = FaultError<Fault::BodyHasShapes>;
 using MissingCallback = FaultError<Fault::MissingCallback>;
 using ForeignWorld = FaultError<Fault::ForeignWorld>;
 using MalformedBytes = FaultError<Fault::MalformedBytes>;
+using KernelUnavailable = FaultError<Fault::KernelUnavailable>;
 
 /// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.
 class FormatError : public MalformedBytes {

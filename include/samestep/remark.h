@@ -6,9 +6,15 @@
 
 namespace samestep {
 
-/// What the engine points out without refusing the call: the warnings of the MIS.
-enum class Remark : std::uint8_t { HighIterWarning, NotBBTreeWarn };
-inline constexpr std::size_t kRemarkKinds = 2;
+/// What the engine points out without refusing the call: the warnings of the MIS first, then our own.
+enum class Remark : std::uint8_t {
+  HighIterWarning,
+  NotBBTreeWarn,
+  OtherKernel,                ///< See Space::setKernel.
+  FewerWorkers,               ///< A WorkerPool got fewer threads than it was to have.
+  MoreWorkersThanProcessors,  ///< A WorkerPool has more threads than the machine runs at once.
+};
+inline constexpr std::size_t kRemarkKinds = 5;
 
 /// Counts remarks and passes each on to a log hook, if there is one. The library itself never prints.
 /// Not part of the simulated state.

@@ -13,8 +13,11 @@
 #include <samestep/collision.h>
 #include <samestep/error.h>
 #include <samestep/id.h>
+#include <samestep/kernel.h>
+#include <samestep/remark.h>
 #include <samestep/shape.h>
 #include <samestep/slot_map.h>
+#include <samestep/workers.h>
 
 namespace samestep {
 
@@ -459,6 +462,27 @@ class Space {
   /// Called after each stage of a step; nullptr for none, which costs nothing.
   void setStageObserver(StageObserver observer, void* data = nullptr);
 
+  // Who computes. Wiring, like functions: no result depends on it, and no saved world carries it.
+
+  /// Steps with the help of a runner's workers, which must outlive the Space or the next call; null for none,
+  /// which costs nothing. Whatever is ordered stays on the stepping thread: callbacks, what they see, sums.
+  /// The soft step uses them, sequential impulses hardly do.
+  /// @throws SpaceLocked
+  void setWorkers(TaskRunner* runner, Sharing sharing = Sharing::whenWorth);
+  TaskRunner* workers() const;
+  /// The kernel that the soft step solves contacts with. Of one that is not available the next best is taken,
+  /// and remarked on. Until called, the best one.
+  /// @throws SpaceLocked; ValueOutOfRange for a value that names no kernel
+  void setKernel(KernelTarget target);
+  /// The same, for tests: never another one.
+  /// @throws SpaceLocked; KernelUnavailable
+  void forceKernel(KernelTarget target);
+  /// The one in use.
+  KernelTarget kernel() const;
+  /// Who is told what the Space points out.
+  Remarks& remarks() { return remarks_; }
+  const Remarks& remarks() const { return remarks_; }
+
   /// Moves the trees after a static body was moved by hand. The step does it by itself.
   /// @throws SpaceLocked
   /// MIS: spaceReindexStatic
@@ -564,6 +588,7 @@ class Space {
   void findPairs();
   void mergeNewPairs();
   void collidePairs();
+  bool collidePairs(std::uint32_t begin, std::uint32_t end, bool surfacesKnown, CollisionStats& stats);
   /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
   /// MIS: spaceArbiterSetFilter
   void expirePairs();
@@ -576,8 +601,10 @@ class Space {
   void softFindGroups();
   void softTakeBodies(S dt);
   void softTakePairs();
+  void softTakeBlock(std::uint32_t block, std::uint32_t begin, std::uint32_t end);
   void softSolve();
   void softFinish(S dt);
+  void softFinish(S dt, std::uint32_t begin, std::uint32_t end);
   S pairMargin() const;
   template <class Visit>
   void eachSolvedPair(Visit&& visit);
@@ -587,9 +614,12 @@ class Space {
 
   void ensureCache() const;
   void placeShapesOf(std::uint32_t bodyIndex) const;
+  void placeAllShapes();
+  bool movePlaced(std::uint32_t bodyIndex) const;
+  void putBoxesOf(std::uint32_t bodyIndex) const;
   void refreshTouched();
   /// MIS: spaceCollideShapes
-  void collidePair(Pair<S>& pair, bool surfacesKnown);
+  void collidePair(Pair<S>& pair, bool surfacesKnown, CollisionStats& stats);
   /// Takes over a collision and asks the callbacks: whether the pair shall be solved. MIS: arbiterUpdate
   bool applyCollision(Pair<S>& pair);
   void forgetManifolds(ShapeId id);
@@ -616,6 +646,7 @@ class Space {
   Impl* impl_;
   std::vector<RangeEvent> rangeEvents_;
   CollisionStats collisionStats_{};
+  Remarks remarks_;
   std::uint64_t accurateInstead_ = 0;
   std::int32_t locked_ = 0;
 };

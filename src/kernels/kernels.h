@@ -16,5 +16,7 @@ extern const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2;
 extern const ContactPasses<FastNumbers> fastBy1;
 extern const ContactPasses<FastNumbers>* const fastSse42;
 extern const ContactPasses<FastNumbers>* const fastAvx2;
+/// Every processor of 64-bit ARM can run it.
+extern const ContactPasses<FastNumbers>* const fastNeon;
 
 }  // namespace samestep::kernels

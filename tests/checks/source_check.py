@@ -138,8 +138,9 @@ class Layers:
     def of(self, path):
         """Layer of a file, or None where the table does not name it."""
         stem = path.name.split(".")[0]
-        if path.parts[0] in self.folders and stem not in self.modules:
-            return self.folders[path.parts[0]]
+        for folder in path.parts[:-1]:
+            if folder in self.folders and stem not in self.modules:
+                return self.folders[folder]
         while stem:
             if stem in self.modules:
                 return self.modules[stem]

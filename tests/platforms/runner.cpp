@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What scripts/platforms runs on each platform: runner [--recorded] [--ticks N] RECORDING...
+// What scripts/platforms runs on each platform: runner [--recorded] [--ticks N] [--kernel NAME] [--workers N]
+// RECORDING...
 // Other options are refused.
 // Prints a line about the platform, then one for each tick of each recording: its name, the tick, the hash of
 // the world after it, computed here; with --recorded the hash that the recording carries. Output goes through
@@ -14,6 +15,7 @@
 #include <samestep/named_handlers.h>
 #include <samestep/replay.h>
 #include <samestep/version.h>
+#include <samestep/workers.h>
 
 namespace samestep {
 namespace {
@@ -44,11 +46,16 @@ std::string_view nameOf(std::string_view path) {
 struct Options {
   bool recorded = false;
   std::uint64_t ticks = ~std::uint64_t{0};
+  KernelTarget kernel = KernelTarget::best;
+  int workers = 1;
 };
 
 template <Scalar S>
 void run(std::string_view name, const std::vector<std::uint8_t>& bytes, const Options& options) {
+  WorkerPool pool(options.workers);
   Replay<S> replay(bytes, namedHandlerWiring<S>());
+  replay.space().setWorkers(&pool, Sharing::always);
+  replay.space().forceKernel(options.kernel);
   while (replay.tick() < options.ticks && replay.step()) {
     const std::uint64_t hash = options.recorded ? replay.recordedHash() : replay.space().hash();
     std::printf("%.*s %" PRIu64 " %016" PRIx64 "\n", static_cast<int>(name.size()), name.data(),
@@ -90,6 +97,12 @@ int main(int argumentCount, char** arguments) {
       options.recorded = true;
     } else if (argument == "--ticks" && i + 1 < argumentCount) {
       options.ticks = std::strtoull(arguments[++i], nullptr, 10);
+    } else if (argument == "--kernel" && i + 1 < argumentCount) {
+      ++i;
+      if (!samestep::findKernel(arguments[i], options.kernel)) samestep::stop(arguments[i], "no such kernel");
+      if (!samestep::isAvailable(options.kernel)) samestep::stop(arguments[i], "not on this machine");
+    } else if (argument == "--workers" && i + 1 < argumentCount) {
+      options.workers = static_cast<int>(std::strtol(arguments[++i], nullptr, 10));
     } else if (argument.starts_with("--")) {
       samestep::stop(arguments[i], "unknown option");
     } else {

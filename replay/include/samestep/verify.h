@@ -29,10 +29,14 @@ struct VerifyOptions {
   /// Called after every step; false stops, as for a recording that takes too long. Null for none.
   bool (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
   void* data = nullptr;
+  /// Who helps, with all that can be shared out, and the kernel, which is forced: no result depends on
+  /// either.
+  TaskRunner* workers = nullptr;
+  KernelTarget kernel = KernelTarget::best;
 };
 
 /// Replays a recording and compares the hash of every step. A mismatch is a result, not an error.
-/// @throws FormatError, MissingCallback
+/// @throws FormatError, MissingCallback, KernelUnavailable
 template <Scalar S>
 VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
                     const VerifyOptions& options = {});

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace samestep {
+
+/// Which processor instructions the soft step solves contacts with. All give the same bits.
+enum class KernelTarget : std::uint8_t {
+  /// The last of availableKernels().
+  best = 0,
+  /// What every processor of the architecture has.
+  portable = 1,
+  sse42 = 2,
+  avx2 = 3,
+  /// 64-bit ARM.
+  neon = 4,
+};
+inline constexpr KernelTarget kKernelTargets[] = {
+    KernelTarget::best, KernelTarget::portable, KernelTarget::sse42, KernelTarget::avx2, KernelTarget::neon};
+
+/// "best", "portable", "sse42", "avx2", "neon".
+const char* kernelName(KernelTarget target);
+/// The target of a name; false if there is none, and `target` stays as it is.
+bool findKernel(std::string_view name, KernelTarget& target);
+
+/// Those that were built and that this processor can run, the slowest first: always `portable`, never `best`.
+std::span<const KernelTarget> availableKernels();
+bool isAvailable(KernelTarget target);
+/// The target itself if it is available, or else the best of those available that come before it.
+KernelTarget nextBestKernel(KernelTarget target);
+
+}  // namespace samestep

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+// Names and choice of kernels, and that all of them give the same bits for blocks of any content.
+#include <samestep/kernel.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "kernels/kernels.h"
+#include "support/random.h"
+
+namespace samestep {
+namespace {
+
+TEST(KernelTest, NamesAndTargetsNameEachOther) {
+  for (const KernelTarget target : kKernelTargets) {
+    KernelTarget found = target == KernelTarget::best ? KernelTarget::avx2 : KernelTarget::best;
+    EXPECT_TRUE(findKernel(kernelName(target), found));
+    EXPECT_EQ(found, target);
+  }
+  KernelTarget untouched = KernelTarget::sse42;
+  EXPECT_FALSE(findKernel("avx", untouched));
+  EXPECT_FALSE(findKernel("", untouched));
+  EXPECT_EQ(untouched, KernelTarget::sse42);
+}
+
+TEST(KernelTest, ThePortableOneIsAlwaysThereAndTheBestIsTheLast) {
+  const auto available = availableKernels();
+  EXPECT_EQ(available.front(), KernelTarget::portable);
+  EXPECT_EQ(nextBestKernel(KernelTarget::best), available.back());
+  EXPECT_TRUE(std::is_sorted(available.begin(), available.end()));
+  EXPECT_TRUE(isAvailable(KernelTarget::best));
+  EXPECT_FALSE(isAvailable(static_cast<KernelTarget>(99)));
+}
+
+TEST(KernelTest, TheNextBestIsAvailableAndNoLater) {
+  for (const KernelTarget target : kKernelTargets) {
+    const KernelTarget next = nextBestKernel(target);
+    EXPECT_TRUE(isAvailable(next));
+    if (target == KernelTarget::best) continue;
+    EXPECT_LE(next, target);
+    EXPECT_EQ(next == target, isAvailable(target));
+  }
+}
+
+constexpr std::uint32_t kBodies = 40;
+constexpr std::uint32_t kBlocks = 9;
+
+/// Blocks, the bodies they are about, and what a kernel made of them.
+template <class N>
+struct Work {
+  std::vector<SoftBody<N>> bodies{kBodies};
+  std::vector<ContactBlock<N>> blocks{kBlocks};
+  std::vector<BlockRest<N>> rests{kBlocks};
+  SoftConstants<N> constants{};
+
+  std::uint64_t run(const ContactPasses<N>& passes) {
+    std::uint64_t left = 0;
+    for (int i = 0; i < 3; ++i) {
+      left |= passes.solve(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
+      left |= passes.relax(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
+    }
+    return left;
+  }
+};
+
+/// Random numbers of a kernel: `size` is a power of two that they stay below, where they have a unit of a
+/// step, in bits.
+struct DoubleSource {
+  using Numbers = PlainNumbers<double, false>;
+  Random random;
+  double number(double most) {
+    return most * (static_cast<double>(random.next() >> 11) / 4503599627370496.0 - 1.0);
+  }
+  double unit() { return number(1); }
+  double part() { return (number(1) + 1) / 2; }
+  double friction() { return 2 * part(); }
+  double speed() { return number(16); }
+  double way() { return number(0.25); }
+  double sum() { return number(4); }
+  double positive() { return 4 * part(); }
+  void constants(SoftConstants<Numbers>& to) {
+    to.softness[0] = {20, 0.75, 0.25};
+    to.softness[1] = {30, 0.5, 0.5};
+    to.substep = 1.0 / 240;
+    to.perSubstep = 240;
+    to.pushSpeed = 3;
+    to.mostSum = 1e6;
+  }
+};
+
+struct FastSource {
+  using Numbers = FastNumbers;
+  Random random;
+  /// Of speeds, ways and impulses.
+  int bits = 20;
+  std::int32_t number(int width) {
+    return static_cast<std::int32_t>(static_cast<std::int64_t>(random.next()) >> (63 - width));
+  }
+  std::int32_t unit() { return number(Numbers::kUnitBits); }
+  std::int32_t part() { return number(Numbers::kUnitBits) & ((1 << Numbers::kUnitBits) - 1); }
+  std::int32_t friction() { return number(Numbers::kFrictionBits) & ((1 << Numbers::kFrictionBits) - 1); }
+  std::int32_t speed() { return number(bits); }
+  std::int32_t way() { return number(bits); }
+  std::int64_t sum() { return number(bits); }
+  std::int64_t positive() { return std::int64_t{number(bits)} & ((std::int64_t{1} << bits) - 1); }
+  void constants(SoftConstants<Numbers>& to) {
+    const std::int32_t one = 1 << Numbers::kUnitBits;
+    to.softness[0] = {20 << 16, one / 4 * 3, one / 4};
+    to.softness[1] = {30 << 16, one / 2, one / 2};
+    to.substep = one / 240;
+    to.perSubstep = 240 << 16;
+    to.pushSpeed = 3 << 18;
+    to.mostSum = std::int64_t{1} << 50;
+    to.mostGap = (1 << 29) / 8;
+  }
+};
+
+template <class Source, class N = typename Source::Numbers>
+Work<N> randomWork(Source& from) {
+  Work<N> work;
+  for (auto& body : work.bodies) {
+    for (int k = 0; k < 3; ++k) {
+      body.velocity[k] = from.speed();
+      body.moved[k] = from.way();
+    }
+    body.moved[3] = from.way();
+  }
+  from.constants(work.constants);
+  Random& random = from.random;
+  for (std::uint32_t i = 0; i < kBlocks; ++i) {
+    ContactBlock<N>& block = work.blocks[i];
+    block = {};
+    work.rests[i] = {};
+    // Lanes share no body but the first, which nothing moves.
+    const int used = random.between(1, kBlockLanes);
+    std::uint32_t next = 1 + random.below(20);
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      const auto bit = static_cast<std::uint8_t>(1 << lane);
+      const auto mark = [&](std::uint8_t& bits, bool set) {
+        if (set) bits = static_cast<std::uint8_t>(bits | bit);
+      };
+      const bool standsA = random.oneIn(4), standsB = !standsA && random.oneIn(4);
+      mark(block.fixedA, lane >= used || standsA);
+      mark(block.fixedB, lane >= used || standsB);
+      if (lane >= used) continue;
+      block.bodyA[lane] = standsA ? 0 : next++;
+      block.bodyB[lane] = standsB ? 0 : next++;
+      mark(block.roundA, random.oneIn(3));
+      mark(block.roundB, random.oneIn(3));
+      mark(block.stiff, standsA || standsB);
+      block.count[lane] = static_cast<std::uint8_t>(random.between(1, 2));
+      block.points = std::max(block.points, block.count[lane]);
+      block.normalX[lane] = from.unit();
+      block.normalY[lane] = from.unit();
+      block.shareA[lane] = from.part();
+      block.friction[lane] = from.friction();
+      block.surface[lane] = from.speed();
+      if constexpr (!N::kStoresSpins) {
+        block.moments.momentA[lane] = from.part();
+        block.moments.momentB[lane] = from.part();
+      }
+      for (int k = 0; k < block.count[lane]; ++k) {
+        BlockPoint<N>& point = block.point[k];
+        for (auto* axis : {&point.normal, &point.tangent}) {
+          axis->armA[lane] = from.unit();
+          axis->armB[lane] = from.unit();
+          axis->mass[lane] = from.part();
+          if constexpr (N::kStoresSpins) {
+            axis->spinA[lane] = from.unit() >> 4;
+            axis->spinB[lane] = from.unit() >> 4;
+          }
+        }
+        point.normal.sum[lane] = from.positive();
+        point.tangent.sum[lane] = from.sum();
+        point.separation[lane] = from.way();
+      }
+    }
+  }
+  return work;
+}
+
+template <class T>
+bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+/// The kernels of the list that this machine runs, with their names.
+template <class N>
+using NamedPasses = std::vector<std::pair<std::string, const ContactPasses<N>*>>;
+
+NamedPasses<FastNumbers> fastKernels() {
+  NamedPasses<FastNumbers> all;
+  if (isAvailable(KernelTarget::sse42)) all.emplace_back("sse42", kernels::fastSse42);
+  if (isAvailable(KernelTarget::avx2)) all.emplace_back("avx2", kernels::fastAvx2);
+  if (isAvailable(KernelTarget::neon)) all.emplace_back("neon", kernels::fastNeon);
+  return all;
+}
+
+TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange) {
+  int within = 0, beyond = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    FastSource source{Random(seed), 0};
+    source.bits = source.random.between(8, 30);
+    const Work<FastNumbers> start = randomWork(source);
+    Work<FastNumbers> expected = start;
+    const bool left = expected.run(kernels::fastBy1) != 0;
+    ++(left ? beyond : within);
+    for (const auto& [name, passes] : fastKernels()) {
+      Work<FastNumbers> work = start;
+      ASSERT_EQ(work.run(*passes) != 0, left) << name << ", seed " << seed;
+      // What has left the range is worth nothing.
+      if (left) continue;
+      ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.rests, expected.rests)) << name << ", seed " << seed;
+    }
+  }
+  // Both sides of the limit have been tried.
+  EXPECT_GT(within, 300);
+  EXPECT_GT(beyond, 300);
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+TEST(DoubleKernelTest, TwoAndFourAtATimeGiveTheSameBits) {
+  using Numbers = PlainNumbers<double, false>;
+  NamedPasses<Numbers> all{{"portable", &kernels::doubleBy2}};
+  if (isAvailable(KernelTarget::avx2)) all.emplace_back("avx2", kernels::doubleAvx2);
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    DoubleSource source{Random(seed)};
+    const Work<Numbers> start = randomWork(source);
+    Work<Numbers> expected = start;
+    ASSERT_EQ(expected.run(kernels::doubleBy2), 0u);
+    ASSERT_FALSE(sameBytes(expected.bodies, start.bodies));
+    for (const auto& [name, passes] : all) {
+      Work<Numbers> work = start;
+      ASSERT_EQ(work.run(*passes), 0u);
+      ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.rests, expected.rests)) << name << ", seed " << seed;
+    }
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace samestep
