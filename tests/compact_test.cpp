@@ -160,7 +160,7 @@ TEST(CompactTest, ASpanThatIsTooSmallIsLeftAtItsEndAndTheSizeIsRight) {
   for (std::uint32_t i = 0; i < 3; ++i) {
     pairs[i].a = {i, 1};
     pairs[i].b = {i + 7, 3};
-    pairs[i].normal = {Fixed(1), Fixed(static_cast<int>(i))};
+    pairs[i].localNormal = {Fixed(1), Fixed(static_cast<int>(i))};
   }
   const Bytes whole = written(pairs);
   for (std::size_t room = 0; room <= whole.size() + 80; ++room) {

@@ -36,7 +36,8 @@ class SnapshotTest : public ::testing::Test {
     space.addWildcardHandler(1, handlerNumber("slippery"));
     space.addCollisionHandler(2, 0, handlerNumber("count"));
     fillAtRandom(space, seed);
-    if (seed % 2 == 1) space.setSolver(SolverKind::softStep);
+    space.setSolver(seed % 2 == 1 ? SolverKind::softStep : SolverKind::sequentialImpulses);
+    if (seed % 4 == 1) space.setPrecision(ContactPrecision::fast);
     std::vector<ShapeId> discs;
     for (int i = 0; i < 4; ++i) discs.push_back(addDisc<S>(space, {S(2 * i - 3), S(7)}, S(1), S(1)));
     for (const std::size_t gone : {2u, 0u}) space.removeWithShapes(bodyOf(space, discs[gone]));
@@ -310,25 +311,21 @@ TYPED_TEST(SnapshotTest, AnotherRevisionIsTakenOnlyIfAskedForByName) {
 TYPED_TEST(SnapshotTest, StatesThatNoSpaceCanHaveAreRefused) {
   using S = TypeParam;
   using World = WorldState<S>;
-  this->expectRefused("a list is not in order", [](World& w) { std::swap(w.pairs[0], w.pairs[1]); });
-  this->expectRefused("a list is not in order", [](World& w) { w.pairs[1] = w.pairs[0]; });
-  this->expectRefused("a list is not in order", [](World& w) { std::swap(w.handlers[0], w.handlers[1]); });
-  this->expectRefused("a pair names a shape that does not exist",
-                      [](World& w) { w.pairs[0].b.index = 4000; });
-  this->expectRefused("a pair names a shape that does not exist",
-                      [](World& w) { w.pairs[0].a.generation += 2; });
-  this->expectRefused("a pair is of one body", [](World& w) { w.pairs[0].b = w.pairs[0].a; });
-  this->expectRefused("a pair is malformed", [](World& w) { w.pairs[0].count = kMaxContactsPerPair + 1; });
-  this->expectRefused("a pair is malformed", [](World& w) { w.pairs[0].stamp = w.stamp + 1; });
-  this->expectRefused("a pair is out of range", [](World& w) { w.pairs[0].friction = S(-1); });
-  this->expectRefused("a handler is malformed", [](World& w) { w.handlers[0].number = 0; });
-  this->expectRefused("there is no static body", [](World& w) { w.staticBody.generation += 2; });
-  this->expectRefused("the time step is out of range", [](World& w) { w.timeStep = S(2); });
-  this->expectRefused("a setting is out of range", [](World& w) { w.settings.iterations = 0; });
-  this->expectRefused("a shape has another's id", [](World& w) {
-    w.shapes.valueAt(0).attach(ShapeId{1, 1}, 0);
-  });
-  this->expectRefused("a shape is on a body that does not exist", [](World& w) {
+  const auto expect = [this](const char* reason, auto&& change) { this->expectRefused(reason, change); };
+  expect("a list is not in order", [](World& w) { std::swap(w.pairs[0], w.pairs[1]); });
+  expect("a list is not in order", [](World& w) { w.pairs[1] = w.pairs[0]; });
+  expect("a list is not in order", [](World& w) { std::swap(w.handlers[0], w.handlers[1]); });
+  expect("a pair names a shape that does not exist", [](World& w) { w.pairs[0].b.index = 4000; });
+  expect("a pair is of one body", [](World& w) { w.pairs[0].b = w.pairs[0].a; });
+  expect("a pair is malformed", [](World& w) { w.pairs[0].count = kMaxContactsPerPair + 1; });
+  expect("a pair is malformed", [](World& w) { w.pairs[0].manifold = static_cast<Manifold>(9); });
+  expect("a pair is out of range", [](World& w) { w.pairs[0].localNormal.x = S(7); });
+  expect("a contact is out of range", [](World& w) { w.pairs[0].contacts[1].anchorB.y = S(1 << 24); });
+  expect("a handler is malformed", [](World& w) { w.handlers[0].number = 0; });
+  expect("there is no static body", [](World& w) { w.staticBody.generation += 2; });
+  expect("the time step is out of range", [](World& w) { w.timeStep = S(2); });
+  expect("a setting is out of range", [](World& w) { w.settings.iterations = 0; });
+  expect("a shape is on a body that does not exist", [](World& w) {
     w.shapes.valueAt(0).setBody(BodyId{4000, 1});
   });
 }
@@ -384,7 +381,7 @@ TEST(SnapshotOfDoubleTest, NoNumberMayBeNaN) {
   spoilAll([](WorldState<double> & w) -> auto& { return w.bodies.valueAt(1); });
   spoilAll([](WorldState<double> & w) -> auto& { return w.shapes.valueAt(3); });
   spoilAll([](WorldState<double> & w) -> auto& { return w.pairs[0]; });
-  EXPECT_GT(spoilt, 60);
+  EXPECT_GT(spoilt, 50);
 }
 #endif
 
