@@ -355,12 +355,12 @@ void run(Input& input, std::uint64_t choice) {
 
   // Where one feature wins by more than what rounding may decide, everything else is exact.
   const double reach = static_cast<double>(a.radius + b.radius + current.margin);
-  const bool decided =
-      !hasNeighbors() && !gaveUp && width(cores, info) > kNeedle &&
-      std::fabs(brute.distance - reach) > bounds.place + 2 * bounds.flat &&
-      std::fabs(brute.distance) > bounds.place + 2 * bounds.flat &&
-      std::fabs(brute.bestFace) > bounds.place + 2 * bounds.flat &&
-      (brute.corners || brute.lead > 2 * bounds.place + 2 * bounds.flat + cores.size * 0x1p-20);
+  const bool decided = !hasNeighbors() && !gaveUp && width(cores, info) > kNeedle &&
+                       std::fabs(brute.distance - reach) > bounds.place + 2 * bounds.flat &&
+                       std::fabs(brute.distance) > bounds.place + 2 * bounds.flat &&
+                       std::fabs(brute.bestFace) > bounds.place + 2 * bounds.flat &&
+                       (brute.corners ? brute.distance - brute.bestFace : brute.lead) >
+                           2 * bounds.place + 2 * bounds.flat + cores.size * 0x1p-20;
   const CollisionInfo<Fixed> turned = touch(b, a);
   const CollisionInfo<Fixed> back = exchanged(turned, a.type == b.type);
   checkAnswer(cores, brute, a, b, back);
