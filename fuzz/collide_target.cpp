@@ -365,10 +365,14 @@ void run(Input& input, std::uint64_t choice) {
   const CollisionInfo<Fixed> back = exchanged(turned, a.type == b.type);
   checkAnswer(cores, brute, a, b, back);
   if (decided) {
-    expect(back.count == info.count && (info.count == 0 || back.normal == info.normal),
-           "exchanging the shapes turns the normal round");
-    expect(hasNoSide(a, info.normal) || hasNoSide(b, info.normal) || sameTouch(back, info, false) ||
-               sameTouch(exchanged(turned, a.type != b.type), info, false),
+    // Apart, the face's own normal and that of the nearest features differ by their rounding.
+    const double turnedBy = brute.distance < 0 ? 0 : 0x1p-29;
+    expect(back.count == info.count, "exchanging the shapes keeps the count");
+    expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
+                     std::fabs(static_cast<double>(back.normal.y - info.normal.y)),
+                 info.count == 0 ? 1e300 : turnedBy, "exchanging the shapes turns the normal round");
+    expect(brute.distance >= 0 || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
+               sameTouch(back, info, false) || sameTouch(exchanged(turned, a.type != b.type), info, false),
            "exchanging the shapes exchanges the points");
   }
 
