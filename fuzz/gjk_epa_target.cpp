@@ -29,6 +29,8 @@ void describe() {
 
 /// Where the Minkowski difference is thinner than this part of its size, double makes no promise.
 constexpr double kThin = 0x1p-20;
+/// Nor where an edge is shorter than this part.
+constexpr double kDust = 0x1p-30;
 
 template <Scalar S>
 bool isVertexOf(const SupportShape<S>& shape, int vertex) {
@@ -86,7 +88,7 @@ void runWith(Search<S>& search) {
   const Cores<S> cores(a, b);
   const SupportPair<S> pair{SupportShape<S>(a), SupportShape<S>(b)};
   CollisionStats stats;
-  if (!kIsFixed<S> && thickness(cores) < cores.reach * kThin) {
+  if (!kIsFixed<S> && (thickness(cores) < cores.reach * kThin || cores.shortest < cores.reach * kDust)) {
     // Only exact products decide right in a difference that is as thin as rounding: here only that it ends.
     searchFrom<S>(pair, current.start, stats);
     return;

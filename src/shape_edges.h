@@ -37,6 +37,8 @@ bool outsideOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point
 template <Scalar S>
 NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) {
   const Plane<S>* planes = shape.planes;
+  // More than the distances below are off by: two roundings of a unit over the largest shape.
+  const S noise(0x1p-16);
   NearestEdge<S> found;
   found.distance = dot(planes[0].n, point - planes[0].v0);
   if (shape.type == ShapeType::segment) {
@@ -51,8 +53,8 @@ NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) 
         found.edge = i;
       }
     }
-    // Deeper inside than any rounding: a vertex is never nearest there.
-    if (found.distance < S(-0x1p-16)) return found;
+    // Inside a vertex is never nearest.
+    if (found.distance < -noise) return found;
   }
 
   for (int step = 0; step < shape.count; ++step) {
@@ -64,8 +66,8 @@ NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) 
     // Of two nearly parallel edges rounding may have preferred the wrong one: the vertex between them is
     // nearest only if both say so.
     if (shape.type == ShapeType::segment || partOfEdge(shape, beyond, point) == -part) {
-      const bool outside = shape.type == ShapeType::segment || outsideOfEdge(shape, found.edge, point) ||
-                           outsideOfEdge(shape, beyond, point);
+      const bool outside = shape.type == ShapeType::segment || found.distance > noise ||
+                           outsideOfEdge(shape, found.edge, point) || outsideOfEdge(shape, beyond, point);
       if (outside) found.vertex = part < 0 ? previous : found.edge;
       return found;
     }
