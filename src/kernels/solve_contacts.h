@@ -42,65 +42,75 @@ template <class L, bool kSprings, class N = typename L::Numbers>
   V tangentPart = L::zero();
   const int points = L::pointsOf(block, lane);
 
-  for (int i = 0; i < points; ++i) {
-    auto& axis = block.point[i].tangent;
-    const V armA = L::load(axis.armA + lane);
-    const V armB = L::load(axis.armB + lane);
-    const V before = L::load(axis.sum + lane);
-    const V limit = L::frictionLimit(friction, L::load(block.point[i].normal.sum + lane));
-    const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
-    const V sum = L::within(before - L::product(L::load(axis.mass + lane), speed), -limit, limit);
-    L::store(axis.sum + lane, sum);
-    const V change = lanes.checked(sum - before);
-    tangentSpeed = tangentSpeed + change;
-    tangentPart = tangentPart + change;
-    velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
-    velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
-    L::note("soft step: friction limit", limit);
-    L::note("soft step: relative speed", speed);
-    if constexpr (!kSprings) {
-      L::store(rest.tangentTotal[i] + lane, L::load(rest.tangentTotal[i] + lane) + sum);
-    }
-  }
-
   const V apart = L::dot2(nx, movedB.x - movedA.x, ny, movedB.y - movedA.y);
-  for (int i = 0; i < points; ++i) {
-    auto& axis = block.point[i].normal;
-    const V armA = L::load(axis.armA + lane);
-    const V armB = L::load(axis.armB + lane);
-    const V before = L::load(axis.sum + lane);
-    // The arms of the tangent are r . n: how far a bend comes nearer.
-    const V separation = L::near(L::load(block.point[i].separation + lane) + apart +
-                                     L::dotOf4(armB, movedB.turn, -armA, movedA.turn,  //
-                                               L::load(block.point[i].tangent.armA + lane), bendA,
-                                               -L::load(block.point[i].tangent.armB + lane), bendB),
-                                 constants);
-    // Not touching yet: may come as near as it is within this substep.
-    const V gap = L::rate(separation, constants.perSubstep);
-    const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
-    V correction;
-    if constexpr (kSprings) {
-      const auto soft = L::softness(block.stiff, lane, constants.softness);
-      const auto free = L::above(separation, L::zero());
-      const V push = L::greater(L::rate(separation, soft.biasRate), L::all(-constants.pushSpeed));
-      const V target = L::select(free, gap, push);
-      const V full = L::product(L::load(axis.mass + lane), lanes.checked(speed + target));
-      correction = L::select(free, full, L::soften(soft, full, before));
-    } else {
-      correction = L::product(L::load(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
+  const auto rub = [&]() __attribute__((always_inline)) {
+    for (int i = 0; i < points; ++i) {
+      auto& axis = block.point[i].tangent;
+      const V armA = L::load(axis.armA + lane);
+      const V armB = L::load(axis.armB + lane);
+      const V before = L::load(axis.sum + lane);
+      const V limit = L::frictionLimit(friction, L::load(block.point[i].normal.sum + lane));
+      const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
+      const V sum = L::within(before - L::product(L::load(axis.mass + lane), speed), -limit, limit);
+      L::store(axis.sum + lane, sum);
+      const V change = lanes.checked(sum - before);
+      tangentSpeed = tangentSpeed + change;
+      tangentPart = tangentPart + change;
+      velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
+      velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
+      L::note("soft step: friction limit", limit);
+      L::note("soft step: relative speed", speed);
+      if constexpr (!kSprings) {
+        L::store(rest.tangentTotal[i] + lane, L::load(rest.tangentTotal[i] + lane) + sum);
+      }
     }
-    const V sum = L::within(before - correction, L::zero(), L::allSum(constants.mostSum));
-    L::store(axis.sum + lane, sum);
-    const V change = lanes.checked(sum - before);
-    normalSpeed = normalSpeed + change;
-    normalPart = normalPart + change;
-    velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
-    velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
-    L::note("soft step: relative speed", speed);
-    L::note("soft step: target speed", gap);
-    if constexpr (!kSprings) {
-      L::store(rest.normalTotal[i] + lane, L::load(rest.normalTotal[i] + lane) + sum);
+  };
+  const auto push = [&]() __attribute__((always_inline)) {
+    for (int i = 0; i < points; ++i) {
+      auto& axis = block.point[i].normal;
+      const V armA = L::load(axis.armA + lane);
+      const V armB = L::load(axis.armB + lane);
+      const V before = L::load(axis.sum + lane);
+      // The arms of the tangent are r . n: how far a bend comes nearer.
+      const V separation = L::near(L::load(block.point[i].separation + lane) + apart +
+                                       L::dotOf4(armB, movedB.turn, -armA, movedA.turn,  //
+                                                 L::load(block.point[i].tangent.armA + lane), bendA,
+                                                 -L::load(block.point[i].tangent.armB + lane), bendB),
+                                   constants);
+      // Not touching yet: may come as near as it is within this substep.
+      const V gap = L::rate(separation, constants.perSubstep);
+      const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
+      V correction;
+      if constexpr (kSprings) {
+        const auto soft = L::softness(block.stiff, lane, constants.softness);
+        const auto free = L::above(separation, L::zero());
+        const V apartSpeed = L::greater(L::rate(separation, soft.biasRate), L::all(-constants.pushSpeed));
+        const V target = L::select(free, gap, apartSpeed);
+        const V full = L::product(L::load(axis.mass + lane), lanes.checked(speed + target));
+        correction = L::select(free, full, L::soften(soft, full, before));
+      } else {
+        correction = L::product(L::load(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
+      }
+      const V sum = L::within(before - correction, L::zero(), L::allSum(constants.mostSum));
+      L::store(axis.sum + lane, sum);
+      const V change = lanes.checked(sum - before);
+      normalSpeed = normalSpeed + change;
+      normalPart = normalPart + change;
+      velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
+      velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
+      L::note("soft step: relative speed", speed);
+      L::note("soft step: target speed", gap);
+      if constexpr (!kSprings) {
+        L::store(rest.normalTotal[i] + lane, L::load(rest.normalTotal[i] + lane) + sum);
+      }
     }
+  };
+  if constexpr (kSprings) {
+    rub();
+    push();
+  } else {
+    push();
+    rub();
   }
 
   normalPart = lanes.checked(normalPart);
