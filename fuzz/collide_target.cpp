@@ -81,7 +81,7 @@ void describe() {
 }
 
 /// Faces that lie this flat on each other count as one: collide takes the first shape's.
-constexpr double kFlat = 0x1p-24;
+constexpr double kFlat = 0x1p-20;
 /// Where the Minkowski difference is thinner than this part of its size, double makes no promise.
 constexpr double kThin = 0x1p-20;
 /// Nor where an edge is shorter than this part.

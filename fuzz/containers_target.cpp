@@ -215,19 +215,17 @@ void runMap(Input& input) {
       }
       case 4: {
         Map other;
-        expect(other.restore(map.values(), map.generations(), map.freeList()),
-               "a state that was is restored");
+        expect(other.restore(map.values(), map.generations()), "a state that was is restored");
         expect(other == map && other.nextId() == map.nextId(), "a restored map is equal");
         map = std::move(other);
         break;
       }
       default: {
         // A state made up: restored or refused, never half.
-        std::vector<std::uint32_t> generations, freeList;
+        std::vector<std::uint32_t> generations;
         for (std::uint32_t i = 0; i < byteOf(op, 1) % 8u; ++i) generations.push_back(byteOf(op, 2) * (i + 1));
-        for (std::uint32_t i = 0; i < byteOf(op, 3) % 8u; ++i) freeList.push_back(byteOf(op, 4) % 8u * i);
         Map other;
-        if (!other.restore(Numbers(byteOf(op, 5) % 8u), generations, freeList)) {
+        if (!other.restore(Numbers(byteOf(op, 5) % 8u), generations)) {
           expect(other.size() == 0 && other.slots() == 0, "a refused state changes nothing");
         }
         break;

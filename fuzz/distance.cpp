@@ -12,7 +12,7 @@
 namespace samestep::fuzz {
 namespace {
 
-using Int128 = __int128;
+__extension__ typedef __int128 Int128;
 
 /// The number type that holds a product of two differences: exactly for Fixed.
 template <Scalar S>

@@ -18,7 +18,8 @@
 namespace samestep::fuzz {
 namespace {
 
-using Int128 = __int128;
+__extension__ typedef __int128 Int128;
+__extension__ typedef unsigned __int128 Unsigned128;
 using Extended = long double;
 
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
@@ -115,9 +116,9 @@ void checkChecked() {
 void checkFunctions() {
   const Fixed x = Fixed::fromRaw(a), y = Fixed::fromRaw(b);
   if (a >= 0) {
-    const auto root = static_cast<unsigned __int128>(static_cast<std::uint64_t>(sqrt(x).raw()));
+    const auto root = static_cast<Unsigned128>(static_cast<std::uint64_t>(sqrt(x).raw()));
     // To nearest: (root - 1/2)^2 <= a 2^32 <= (root + 1/2)^2, times 4.
-    const auto value = static_cast<unsigned __int128>(static_cast<std::uint64_t>(a)) << 34;
+    const auto value = static_cast<Unsigned128>(static_cast<std::uint64_t>(a)) << 34;
     expect(root == 0 || (2 * root - 1) * (2 * root - 1) <= value, "sqrt is not too large");
     expect((2 * root + 1) * (2 * root + 1) >= value, "sqrt is not too small");
   } else {

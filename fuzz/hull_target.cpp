@@ -21,7 +21,7 @@
 namespace samestep::fuzz {
 namespace {
 
-using Int128 = __int128;
+__extension__ typedef __int128 Int128;
 using Point = Vector<Fixed>;
 
 constexpr int kMostPoints = 40;

@@ -37,8 +37,8 @@ struct CommandWriter {
     for (const Shape<S>& shape : spawn.shapes) {
       Shape<S> free = shape.detached();
       free.setBody({});
-      if (spawn.id.valid()) free.attach(shape.id(), 0);
       write.put(free);
+      if (spawn.id.valid()) write.put(shape.id());
     }
   }
   void operator()(const UserInput& input) const {

@@ -86,8 +86,12 @@ class CommandReader {
       Shape<S>& shape = made.shapes.emplace_back();
       read_.get(shape);
       if (shape.body().valid()) failFormat(at, "a new shape has a body");
-      if (!made.id.valid() && shape.id().valid()) failFormat(at, "a new shape has an id");
       if (!shape.wellFormed()) failFormat(at, "a shape is malformed");
+      if (made.id.valid()) {
+        ShapeId id;
+        read_.get(id);
+        shape.attach(id, 0);
+      }
     }
     return command;
   }

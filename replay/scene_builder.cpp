@@ -47,9 +47,9 @@ void SceneBuilder<S>::buildFile() {
 template <Scalar S>
 void SceneBuilder<S>::readSettings(const Cursor& at) {
   Space<S>& space = scene_.space_;
-  at.allow({"solver", "precision", "gravity", "iterations", "substeps", "damping", "collisionSlop", "collisionBias",
-            "collisionPersistence", "contactHertz", "contactDamping", "contactPushSpeed", "contactMargin",
-            "bounceThreshold", "worldExtent"});
+  at.allow({"solver", "precision", "gravity", "iterations", "substeps", "damping", "collisionSlop",
+            "collisionBias", "collisionPersistence", "contactHertz", "contactDamping", "contactPushSpeed",
+            "contactMargin", "bounceThreshold", "worldExtent"});
   at.optional("solver", [&](const Cursor& v) {
     const std::string& solver = v.text();
     if (solver == "soft step") {

@@ -54,6 +54,8 @@ struct alignas(4 * sizeof(typename N::Speed)) SoftDrive {
   typename N::Speed base[4];
   /// What damping leaves of a velocity in one substep.
   typename N::Coefficient kept;
+  /// Which velocities had to be held at their limits: bits of Body::Held.
+  std::uint8_t held;
 };
 
 /// One axis of a contact point, the normal n or the tangent t = perp(n), of each lane. An impulse u is the

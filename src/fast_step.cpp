@@ -243,8 +243,11 @@ std::uint64_t FastSolver<S>::integrateVelocities(std::uint32_t begin, std::uint3
     for (int k = 0; k < 3; ++k) {
       const std::int64_t given = std::int64_t{body.velocity[k]} - drive.base[k];
       const std::int64_t limit = k == 2 ? mostTurn : mostSpeed;
-      const std::int64_t base =
-          clamp(product(body.velocity[k], drive.kept, Numbers::kUnitBits) + drive.push[k], -limit, limit);
+      const std::int64_t free = product(body.velocity[k], drive.kept, Numbers::kUnitBits) + drive.push[k];
+      const std::int64_t base = clamp(free, -limit, limit);
+      if (base != free) [[unlikely]]
+        drive.held =
+            static_cast<std::uint8_t>(drive.held | (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
       const std::int64_t speed = base + given;
       drive.base[k] = narrow(base);
       body.velocity[k] = narrow(speed);
@@ -278,6 +281,7 @@ void FastSolver<S>::giveBodiesBack(Solver& solver, std::uint32_t begin, std::uin
   const auto add = [](S& to, std::int64_t raw) { to += S::fromRaw(raw); };
   for (std::uint32_t i = begin; i < end; ++i) {
     auto& body = solver.bodies[i];
+    solver.drives[i].held = drives_[i].held;
     for (int k = 0; k < 3; ++k) {
       const int turning = k == 2 ? radiusBits_[i] : 0;
       // What is finer than the unit of this step stays.

@@ -13,9 +13,10 @@ namespace samestep {
 
 template <Scalar S>
 Softness<S> makeSoftness(S hertz, S dampingRatio, S substep) {
-  if (hertz == S(0)) return {S(0), S(1), S(0)};
   const S omega = S(2) * kPi<S> * hertz;
   const S a1 = S(2) * dampingRatio + substep * omega;
+  // Also where a spring is too weak for the scalar to tell from none.
+  if (hertz == S(0) || a1 == S(0)) return {S(0), S(1), S(0)};
   const S a2 = substep * omega * a1;
   const S a3 = reciprocal(S(1) + a2);
   return {omega / a1, a2 * a3, a3};
@@ -76,6 +77,7 @@ void SoftSolver<S>::clear() {
   drives.assign(1, {});
   momentsPerMass.assign(1, S(0));
   freeBodies.clear();
+  freeHeld.clear();
   groups.clear();
   blockCount = 0;
 }
@@ -154,6 +156,7 @@ void SoftSolver<S>::addFree(const Body<S>& body, const SoftDrive<Numbers>& drive
     integratePosition(moving);
   }
   freeBodies.push_back(moving);
+  freeHeld.push_back(alone.held);
 }
 
 template <Scalar S>
@@ -315,7 +318,11 @@ void SoftSolver<S>::integrateVelocity(SoftBody<Numbers>& body, SoftDrive<Numbers
   constexpr S kLimits[3] = {kMaxSpeed<S>, kMaxSpeed<S>, kMaxAngularSpeed<S>};
   for (int k = 0; k < 3; ++k) {
     const S given = body.velocity[k] - drive.base[k];
-    drive.base[k] = clamp(mulAdd(body.velocity[k], drive.kept, drive.push[k]), -kLimits[k], kLimits[k]);
+    const S free = mulAdd(body.velocity[k], drive.kept, drive.push[k]);
+    drive.base[k] = clamp(free, -kLimits[k], kLimits[k]);
+    if (drive.base[k] != free) [[unlikely]]
+      drive.held =
+          static_cast<std::uint8_t>(drive.held | (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
     body.velocity[k] = drive.base[k] + given;
   }
 }

@@ -36,6 +36,7 @@ struct SoftSolver {
   std::vector<SoftDrive<Numbers>> drives;
   /// Those that touch nothing, after the step.
   std::vector<SoftBody<Numbers>> freeBodies;
+  std::vector<std::uint8_t> freeHeld;
   /// The first blockCount are in use; the rest keep their memory.
   std::vector<Block> blocks;
   std::vector<Rest> rests;

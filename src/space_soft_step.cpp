@@ -183,9 +183,11 @@ void Space<S>::softFinish(S dt, std::uint32_t begin, std::uint32_t end) {
     Body<S>& body = state_.bodies.valueAt(i);
     if (body.type() == BodyType::staticBody) continue;
     const std::uint32_t index = impl.solverIndex[i];
-    const auto& solved =
-        (index & Impl::kFree) != 0 ? impl.soft.freeBodies[index & ~Impl::kFree] : impl.soft.bodies[index];
+    const bool isFree = (index & Impl::kFree) != 0;
+    const auto& solved = isFree ? impl.soft.freeBodies[index & ~Impl::kFree] : impl.soft.bodies[index];
     if (body.isDynamic()) {
+      // The substeps hold velocities, too.
+      impl.held[i] |= isFree ? impl.soft.freeHeld[index & ~Impl::kFree] : impl.soft.drives[index].held;
       impl.held[i] |= body.holdVelocity({{solved.velocity[0], solved.velocity[1]}, solved.velocity[2]});
     }
     if (body.positionFunc() != 0) [[unlikely]] {

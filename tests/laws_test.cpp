@@ -112,6 +112,7 @@ TYPED_TEST_SUITE(LawsTest, AllScalars);
 TYPED_TEST(LawsTest, FreeFallIsExact) {
   using S = TypeParam;
   Space<S> space;
+  space.setSolver(SolverKind::sequentialImpulses);
   space.setGravity({S(3), S(-10)});
   const BodyId id = space.add(Body<S>(S(7), S(5)));
   for (int n = 1; n <= 300; ++n) {
@@ -129,6 +130,7 @@ TYPED_TEST(LawsTest, FreeFallIsExact) {
 TYPED_TEST(LawsTest, MomentumOfEqualMassesIsKept) {
   using S = TypeParam;
   Space<S> space;
+  space.setSolver(SolverKind::sequentialImpulses);
   const std::vector<BodyId> ids = this->throwDiscs(space, true);
   const auto total = [&] {
     Vector<S> sum;
@@ -155,6 +157,7 @@ TYPED_TEST(LawsTest, MomentumOfEqualMassesIsKept) {
 TYPED_TEST(LawsTest, MomentumOfAllMassesIsKeptWithinTheRoundingOfTheImpulses) {
   using S = TypeParam;
   Space<S> space;
+  space.setSolver(SolverKind::sequentialImpulses);
   const std::vector<BodyId> ids = this->throwDiscs(space, false);
   const auto total = [&](auto component) {
     double sum = 0;
@@ -182,6 +185,7 @@ TYPED_TEST(LawsTest, RestitutionIsTheRatioOfSpeeds) {
   using S = TypeParam;
   for (const S e : {S(0), ratio<S>(1, 4), ratio<S>(1, 2), S(1)}) {
     Space<S> space;
+    space.setSolver(SolverKind::sequentialImpulses);
     const BodyId id = this->slider(space, S(0), e, {S(3), S(-8)}, S(1));
     space.step(kTick<S>);
     space.step(kTick<S>);
@@ -194,6 +198,7 @@ TYPED_TEST(LawsTest, WithinTheFrictionConeNothingSlides) {
   using S = TypeParam;
   for (const S friction : {ratio<S>(25, 32), S(1), S(10)}) {
     Space<S> space;
+    space.setSolver(SolverKind::sequentialImpulses);
     space.setGravity({S(6), S(-8)});
     const BodyId id = this->slider(space, friction, S(0), {}, this->resting());
     for (int i = 0; i < 300; ++i) space.step(kTick<S>);
@@ -208,6 +213,7 @@ TYPED_TEST(LawsTest, OutsideTheFrictionConeTheSlideIsCoulombs) {
   using S = TypeParam;
   for (const S friction : {S(0), ratio<S>(1, 4), ratio<S>(1, 2)}) {
     Space<S> space;
+    space.setSolver(SolverKind::sequentialImpulses);
     space.setGravity({S(6), S(-8)});
     const BodyId id = this->slider(space, friction, S(0), {}, this->resting());
     const double a = 6 - 8 * double(friction);
@@ -224,6 +230,7 @@ TYPED_TEST(LawsTest, OutsideTheFrictionConeTheSlideIsCoulombs) {
 TYPED_TEST(LawsTest, ASlideEndsWhereCoulombSays) {
   using S = TypeParam;
   Space<S> space;
+  space.setSolver(SolverKind::sequentialImpulses);
   space.setGravity({S(0), S(-8)});
   const BodyId id = this->slider(space, ratio<S>(1, 2), S(0), {S(4), S(0)}, this->resting());
   for (int n = 0; n < 200; ++n) space.step(kTick<S>);
@@ -241,6 +248,7 @@ TYPED_TEST(LawsTest, EnergyOfABouncingDiscNeverGrows) {
   using S = TypeParam;
   for (const S e : {S(0), ratio<S>(1, 2), ratio<S>(3, 4), S(1)}) {
     Space<S> space;
+    space.setSolver(SolverKind::sequentialImpulses);
     space.setGravity({S(0), S(-10)});
     this->slider(space, S(0), e, {S(1), S(0)}, S(3));
     this->expectEnergyGrowsOnlyByOverlapsRemoved(space, 400, kRounding);
@@ -252,6 +260,7 @@ TYPED_TEST(LawsTest, EnergyOfAPassivePileNeverGrows) {
   using S = TypeParam;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     Space<S> space;
+    space.setSolver(SolverKind::sequentialImpulses);
     space.setGravity({S(0), S(-10)});
     space.setIterations(100);
     Random random(seed);

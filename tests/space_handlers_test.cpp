@@ -256,6 +256,7 @@ TYPED_TEST(HandlersTest, BeginSayingNoLetsTheShapesPassUntilTheySeparate) {
 
 TYPED_TEST(HandlersTest, PreSolveSayingNoLetsTheShapesPassForThisStepOnly) {
   using S = TypeParam;
+  this->world_.setSolver(SolverKind::sequentialImpulses);  // Its bias velocity shows what was solved.
   Recorder<S>& h = this->bindPair("h", 1, 2);
   h.preSolveAnswer = false;
   const ShapeId a = this->disc(S(0), 1, 10);

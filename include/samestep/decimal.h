@@ -17,7 +17,8 @@ namespace samestep {
 inline constexpr int kMaxDoubleDecimalLength = 1200;
 
 /// Reads [+-] digits [. digits] [(e|E) [+-] digits] with a digit on at least one side of the point, the whole
-/// of text, and rounds it once: to the nearest double, ties to even. What is too small becomes a subnormal or a zero of its sign.
+/// of text, and rounds it once: to the nearest double, ties to even. What is too small becomes a subnormal or
+/// a zero of its sign.
 /// @return ok; tooLong; empty; notANumber (also for inf, nan, hex and any space); outOfRange where the
 ///         nearest double would be infinite. Unless ok, out stays as it was.
 DecimalStatus parseDecimal(std::string_view text, double& out);
