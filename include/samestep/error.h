@@ -59,7 +59,7 @@ enum class Fault : std::uint8_t {
   ForeignWorld,     ///< A saved state of another kind of world.
   MalformedBytes,   ///< Bytes from outside that are not what they should be; see FormatError.
   KernelUnavailable,  ///< A forced kernel that was not built or that this processor cannot run.
-  IllegalId,  ///< An id that the caller gives to a new object and that its slot cannot have any more.
+  IllegalId,          ///< An id that the caller gives to a new object and that its slot cannot have any more.
   UnsoundArithmetic,  ///< The processor is in a mode in which double gives other results.
 };
 
