@@ -153,7 +153,10 @@ void SoftSolver<S>::addFree(const Body<S>& body, const SoftDrive<Numbers>& drive
   for (int i = 0; i < substeps; ++i) {
     for (int k = 0; k < 3; ++k) alone.base[k] = moving.velocity[k];
     integrateVelocity(moving, alone);
-    integratePosition(moving);
+    // Nothing asks how a body bends that touches nothing.
+    for (int k = 0; k < 3; ++k) {
+      moving.moved[k] = mulAdd(moving.velocity[k], constants.substep, moving.moved[k]);
+    }
   }
   freeBodies.push_back(moving);
   freeHeld.push_back(alone.held);
@@ -318,7 +321,8 @@ void SoftSolver<S>::integrateVelocity(SoftBody<Numbers>& body, SoftDrive<Numbers
   constexpr S kLimits[3] = {kMaxSpeed<S>, kMaxSpeed<S>, kMaxAngularSpeed<S>};
   for (int k = 0; k < 3; ++k) {
     const S given = body.velocity[k] - drive.base[k];
-    const S free = mulAdd(body.velocity[k], drive.kept, drive.push[k]);
+    const S free = drive.kept == S(1) ? body.velocity[k] + drive.push[k]
+                                      : mulAdd(body.velocity[k], drive.kept, drive.push[k]);
     drive.base[k] = clamp(free, -kLimits[k], kLimits[k]);
     if (drive.base[k] != free) [[unlikely]]
       drive.held =
