@@ -105,7 +105,8 @@ struct alignas(64) ContactBlock {
   typename N::Coefficient normalY[kBlockLanes];
   /// The part of u that changes the speed of A; the rest that of B.
   typename N::Coefficient shareA[kBlockLanes];
-  BlockMoments<N> moments;
+  // Takes no room where spins are kept: what follows stays aligned.
+  [[no_unique_address]] BlockMoments<N> moments;
   typename N::Coefficient friction[kBlockLanes];
   /// The surface's own speed along the tangent, m/s.
   typename N::Speed surface[kBlockLanes];
