@@ -51,6 +51,7 @@ class FastSolver {
   int wayBits_ = 0;
 };
 
+#ifndef SAMESTEP_FIXED_ONLY
 /// A double gains nothing: its kernel is the accurate one.
 template <>
 class FastSolver<double> {
@@ -62,6 +63,7 @@ class FastSolver<double> {
     return true;
   }
 };
+#endif
 
 extern template class FastSolver<Fixed>;
 extern template class FastSolver<CheckedFixed>;
