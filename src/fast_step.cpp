@@ -178,7 +178,6 @@ bool FastSolver<S>::takeBlocks(const Solver& solver, std::uint32_t begin, std::u
     block.roundA = from.roundA;
     block.roundB = from.roundB;
     block.stiff = from.stiff;
-    block.bounces = from.bounces;
     for (int lane = 0; lane < kBlockLanes; ++lane) {
       block.bodyA[lane] = from.bodyA[lane];
       block.bodyB[lane] = from.bodyB[lane];

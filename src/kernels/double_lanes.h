@@ -22,7 +22,6 @@ struct DoubleLanes {
   [[gnu::always_inline]] static V zero() { return V{}; }
   [[gnu::always_inline]] static V whole() { return all(1.0); }
   [[gnu::always_inline]] static V all(double x) { return x - V{}; }
-  [[gnu::always_inline]] static V allSum(double x) { return all(x); }
   [[gnu::always_inline]] static V load(const double* from) { return *reinterpret_cast<const V*>(from); }
   [[gnu::always_inline]] static void store(double* to, V v) { *reinterpret_cast<V*>(to) = v; }
   [[gnu::always_inline]] static V select(M mask, V a, V b) { return mask ? a : b; }

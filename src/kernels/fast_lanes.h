@@ -23,7 +23,6 @@ class FastLanes {
   [[gnu::always_inline]] static V zero() { return V{}; }
   [[gnu::always_inline]] static V whole() { return all(1 << Numbers::kUnitBits); }
   [[gnu::always_inline]] static V all(std::int64_t x) { return V{} + x; }
-  [[gnu::always_inline]] static V allSum(std::int64_t x) { return all(x); }
   [[gnu::always_inline]] static V load(const std::int32_t* from) { return Vectors::widen(from); }
   [[gnu::always_inline]] static V load(const std::int64_t* from) {
     return *reinterpret_cast<const typename Vectors::Loose*>(from);

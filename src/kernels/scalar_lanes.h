@@ -37,7 +37,6 @@ struct ScalarLanes {
   [[gnu::always_inline]] static V zero() { return all(S(0)); }
   [[gnu::always_inline]] static V whole() { return all(S(1)); }
   [[gnu::always_inline]] static V all(S x) { return {x, x}; }
-  [[gnu::always_inline]] static V allSum(S x) { return all(x); }
   [[gnu::always_inline]] static V load(const S* from) { return {from[0], from[1]}; }
   [[gnu::always_inline]] static void store(S* to, const V& v) {
     to[0] = v.a;

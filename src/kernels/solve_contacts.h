@@ -15,8 +15,9 @@ struct LaneMotion {
   typename L::V x, y, turn;
 };
 
-/// One pair of each lane: friction of all points against the normal impulses so far, then the normals, which
-/// have the last word.
+/// One pair of each lane. With springs friction comes first, against the normal impulses so far, and the
+/// normals have the last word; without them friction comes last, against what the normals then are, since it
+/// would otherwise be held by impulses that relaxing is about to lower.
 template <class L, bool kSprings, class N = typename L::Numbers>
 [[gnu::always_inline]] inline void solveLanes(ContactBlock<N>& block, BlockRest<N>& rest, int lane,
                                               SoftBody<N>* bodies, const SoftConstants<N>& constants,
@@ -91,7 +92,7 @@ template <class L, bool kSprings, class N = typename L::Numbers>
       } else {
         correction = L::product(L::load(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
       }
-      const V sum = L::within(before - correction, L::zero(), L::allSum(constants.mostSum));
+      const V sum = L::within(before - correction, L::zero(), L::all(constants.mostSum));
       L::store(axis.sum + lane, sum);
       const V change = lanes.checked(sum - before);
       normalSpeed = normalSpeed + change;
