@@ -134,6 +134,25 @@ class FastLanes {
   V left_{};
 };
 
+/// What vectors have in common whose processor shifts unsigned 64-bit numbers only. `Types` names the
+/// vectors.
+template <class Types>
+struct UnsignedShifts : Types {
+  using V = typename Types::V;
+  using U = typename Types::U;
+
+  template <int kBits>
+  [[gnu::always_inline]] static V rounded(V x) {
+    constexpr std::uint64_t kBias = std::uint64_t{1} << 63;
+    const U raised = reinterpret_cast<U>(x) + (kBias + (std::uint64_t{1} << (kBits - 1)));
+    return reinterpret_cast<V>(((raised - (reinterpret_cast<U>(x) >> 63)) >> kBits) - (kBias >> kBits));
+  }
+  template <int kBits>
+  [[gnu::always_inline]] static V down(V x) {
+    return reinterpret_cast<V>(reinterpret_cast<U>(x) >> kBits);
+  }
+};
+
 /// One at a time, on every machine.
 struct OneInteger {
   using V = std::int64_t;

@@ -8,11 +8,14 @@
 namespace samestep {
 namespace {
 
-/// Two at a time: SSE4.2.
-struct TwoIntegers {
+struct TwoIntegerVectors {
   using V [[gnu::vector_size(16), gnu::may_alias]] = std::int64_t;
   using U [[gnu::vector_size(16), gnu::may_alias]] = std::uint64_t;
   using Loose [[gnu::vector_size(16), gnu::may_alias, gnu::aligned(8)]] = std::int64_t;
+};
+
+/// Two at a time: SSE4.2.
+struct TwoIntegers : UnsignedShifts<TwoIntegerVectors> {
   using Body = SoftBody<FastNumbers>;
 
   [[gnu::always_inline]] static V widen(const std::int32_t* from) {
@@ -20,17 +23,6 @@ struct TwoIntegers {
   }
   [[gnu::always_inline]] static V multiply(V a, V b) {
     return reinterpret_cast<V>(_mm_mul_epi32(reinterpret_cast<__m128i>(a), reinterpret_cast<__m128i>(b)));
-  }
-  template <int kBits>
-  [[gnu::always_inline]] static V rounded(V x) {
-    // SSE shifts unsigned numbers only.
-    constexpr std::uint64_t kBias = std::uint64_t{1} << 63;
-    const U raised = reinterpret_cast<U>(x) + (kBias + (std::uint64_t{1} << (kBits - 1)));
-    return reinterpret_cast<V>(((raised - (reinterpret_cast<U>(x) >> 63)) >> kBits) - (kBias >> kBits));
-  }
-  template <int kBits>
-  [[gnu::always_inline]] static V down(V x) {
-    return reinterpret_cast<V>(reinterpret_cast<U>(x) >> kBits);
   }
   [[gnu::always_inline]] static V mask(int bits) { return V{-(bits & 1), -(bits >> 1 & 1)}; }
   [[gnu::always_inline]] static std::uint64_t at(V v, int i) { return static_cast<std::uint64_t>(v[i]); }

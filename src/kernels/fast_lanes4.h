@@ -8,11 +8,14 @@
 namespace samestep {
 namespace {
 
-/// Four at a time: AVX2.
-struct FourIntegers {
+struct FourIntegerVectors {
   using V [[gnu::vector_size(32), gnu::may_alias]] = std::int64_t;
   using U [[gnu::vector_size(32), gnu::may_alias]] = std::uint64_t;
   using Loose [[gnu::vector_size(32), gnu::may_alias, gnu::aligned(8)]] = std::int64_t;
+};
+
+/// Four at a time: AVX2.
+struct FourIntegers : UnsignedShifts<FourIntegerVectors> {
   using Body = SoftBody<FastNumbers>;
 
   [[gnu::always_inline]] static V widen(const std::int32_t* from) {
@@ -20,17 +23,6 @@ struct FourIntegers {
   }
   [[gnu::always_inline]] static V multiply(V a, V b) {
     return reinterpret_cast<V>(_mm256_mul_epi32(reinterpret_cast<__m256i>(a), reinterpret_cast<__m256i>(b)));
-  }
-  template <int kBits>
-  [[gnu::always_inline]] static V rounded(V x) {
-    // AVX2 shifts unsigned numbers only.
-    constexpr std::uint64_t kBias = std::uint64_t{1} << 63;
-    const U raised = reinterpret_cast<U>(x) + (kBias + (std::uint64_t{1} << (kBits - 1)));
-    return reinterpret_cast<V>(((raised - (reinterpret_cast<U>(x) >> 63)) >> kBits) - (kBias >> kBits));
-  }
-  template <int kBits>
-  [[gnu::always_inline]] static V down(V x) {
-    return reinterpret_cast<V>(reinterpret_cast<U>(x) >> kBits);
   }
   [[gnu::always_inline]] static V mask(int bits) {
     const U all = U{} + static_cast<std::uint64_t>(bits);
