@@ -20,17 +20,26 @@ struct PlainNumbers {
   static constexpr bool kStoresSpins = kSpins;
 };
 
-/// Integers of 32 bits in units of powers of two, sums of 64 bits. Speeds and impulses have one unit for the
-/// whole step, chosen by the fastest body, and ways another; a body's turning is kept as the way of a point
-/// at its radius, a power of two no less than the arms of its contacts.
-struct FastNumbers {
+/// Coefficients as integers of 32 bits in units of powers of two, impulses in 64. A body's turning is kept as
+/// the way of a point at its radius, a power of two no less than the arms of its contacts.
+struct IntegerUnits {
   using Coefficient = std::int32_t;
-  using Speed = std::int32_t;
   using Sum = std::int64_t;
   static constexpr bool kStoresSpins = true;
   /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of spins; of friction;
   /// of rates, speeds by ways.
   static constexpr int kUnitBits = 30, kSpinBits = 26, kFrictionBits = 22, kRateBits = 22;
+};
+
+/// Speeds, ways and impulses in 64 bits: the accuracy and the range of Q32.32.
+struct WideNumbers : IntegerUnits {
+  using Speed = std::int64_t;
+};
+
+/// Speeds and ways in 32 bits. Speeds and impulses have one unit for the whole step, chosen by the fastest
+/// body, and ways another.
+struct FastNumbers : IntegerUnits {
+  using Speed = std::int32_t;
   /// What speeds, ways and changes of impulses must stay below in size: then no product leaves 64 bits.
   static constexpr std::int64_t kRange = std::int64_t{1} << 30;
 };
@@ -48,14 +57,10 @@ struct alignas(4 * sizeof(typename N::Speed)) SoftBody {
 /// What else a substep needs of a body.
 template <class N>
 struct alignas(4 * sizeof(typename N::Speed)) SoftDrive {
-  /// Added to the velocity by each substep.
+  /// Added to the velocity by each substep; the last is what damping leaves of a velocity in one.
   typename N::Speed push[4];
   /// The velocity of the substep before contacts: what it is less by holds the impulses of the contacts.
   typename N::Speed base[4];
-  /// What damping leaves of a velocity in one substep.
-  typename N::Coefficient kept;
-  /// Which velocities had to be held at their limits: bits of Body::Held.
-  std::uint8_t held;
 };
 
 /// One axis of a contact point, the normal n or the tangent t = perp(n), of each lane. An impulse u is the
@@ -79,7 +84,7 @@ template <class N>
 struct BlockPoint {
   BlockAxis<N> normal, tangent;
   /// Between the surfaces along the normal when the step began, m.
-  typename N::Coefficient separation[kBlockLanes];
+  alignas(kBlockLanes * sizeof(typename N::Speed)) typename N::Speed separation[kBlockLanes];
 };
 
 /// How an impulse turns the bodies, 1/m^2: spin = moment * arm * u.
@@ -138,8 +143,8 @@ template <class N>
 struct SoftConstants {
   /// Between bodies that move, and against one that does not.
   Softness<typename N::Coefficient> softness[2];
-  /// Seconds, and its inverse.
-  typename N::Coefficient substep, perSubstep;
+  /// Of seconds, the inverse.
+  typename N::Coefficient perSubstep;
   /// The greatest speed of pushing apart, m/s.
   typename N::Speed pushSpeed;
   /// The greatest accumulated u, m/s.

@@ -4,11 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <samestep/kernel.h>
-
-#include "block_groups.h"
-#include "contact_block.h"
-#include "contact_row.h"
+#include "block_solver.h"
 
 namespace samestep {
 
@@ -21,73 +17,79 @@ namespace samestep {
 template <Scalar S>
 Softness<S> makeSoftness(S hertz, S dampingRatio, S substep);
 
-/// What the solver's blocks hold for a scalar.
+/// The solvers of a scalar, the first one preferred: where the numbers of a step do not fit one, the next
+/// takes the step.
 template <Scalar S>
-using SolverNumbers = PlainNumbers<S, !ScalarTraits<S>::kCheapProducts>;
-
-template <Scalar S>
-struct SoftSolver {
-  using Numbers = SolverNumbers<S>;
-  using Block = ContactBlock<Numbers>;
-  using Rest = BlockRest<Numbers>;
-
-  /// Those that touch something; the first stands for all that never move.
-  std::vector<SoftBody<Numbers>> bodies;
-  std::vector<SoftDrive<Numbers>> drives;
-  /// Those that touch nothing, after the step.
-  std::vector<SoftBody<Numbers>> freeBodies;
-  std::vector<std::uint8_t> freeHeld;
-  /// The first blockCount are in use; the rest keep their memory.
-  std::vector<Block> blocks;
-  std::vector<Rest> rests;
-  std::uint32_t blockCount = 0;
-  /// Of the blocks, in their order.
-  std::vector<BlockGroup> groups;
-  /// Whether any contact may bounce.
-  bool bounces = false;
-  /// Inverse moment times mass of each body, 1/m^2.
-  std::vector<S> momentsPerMass;
-  SoftConstants<Numbers> constants{};
-  ContactPasses<Numbers> passes;
-
-  SoftSolver();
-
-  /// @param target  one that is available
-  void setKernel(KernelTarget target);
-  /// Forgets the last step.
-  void clear();
-  /// Adds a body that touches something, and says as which.
-  std::uint32_t addBody(const Body<S>& body, const SoftDrive<Numbers>& drive);
-  /// Makes all substeps of a body that touches nothing.
-  void addFree(const Body<S>& body, const SoftDrive<Numbers>& drive, int substeps);
-  /// Makes room for the groups, whose blocks are then to be opened.
-  void makeRoom();
-  /// Readies a block, whose lanes hold anything.
-  void openBlock(std::uint32_t at);
-  /// Empties the lanes of a block that hold no pair.
-  void closeBlock(std::uint32_t at, int lanes);
-  /// Puts a pair into a lane of a block and gives its kept impulses to the bodies.
-  void addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
-               std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA, bool roundB,
-               S bounceThreshold);
-  /// Makes all substeps.
-  void run(int substeps, Crew& crew);
-  /// After the last one: what bounces.
-  void bounce();
-  /// Writes the impulses back.
-  void store(std::vector<Pair<S>>& pairs, Crew& crew) const;
+class SoftSolvers {
+ public:
+  /// Starts a step. @param fast  whether 32 bits may do
+  void begin(bool fast) { chosen_ = fast ? 0 : 1; }
+  /// To the next one; the last takes everything.
+  void fallBack() { ++chosen_; }
+  /// Calls the function with the one chosen.
+  template <class Function>
+  decltype(auto) with(Function&& function) {
+    if (chosen_ == 1) [[likely]]
+      return function(wide_);
+    return chosen_ == 0 ? function(fast_) : function(whole_);
+  }
+  bool isFast() const { return chosen_ == 0; }
+  void setKernel(KernelTarget target) {
+    fast_.setKernel(target);
+    wide_.setKernel(target);
+    whole_.setKernel(target);
+  }
 
  private:
-  void integrateVelocity(SoftBody<Numbers>& body, SoftDrive<Numbers>& drive) const;
-  void integratePosition(SoftBody<Numbers>& body) const;
-  void pass(ContactPass<Numbers> kernel, Crew& crew);
-  void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
+  BlockSolver<S, FastNumbers> fast_;
+  BlockSolver<S, WideNumbers> wide_;
+  BlockSolver<S, PlainNumbers<S, true>> whole_;
+  int chosen_ = 1;
 };
 
 #ifndef SAMESTEP_FIXED_ONLY
-extern template struct SoftSolver<double>;
+/// A double gains nothing from less accuracy, and holds every number.
+template <>
+class SoftSolvers<double> {
+ public:
+  void begin(bool) {}
+  void fallBack() {}
+  template <class Function>
+  decltype(auto) with(Function&& function) {
+    return function(solver_);
+  }
+  bool isFast() const { return true; }
+  void setKernel(KernelTarget target) { solver_.setKernel(target); }
+
+ private:
+  BlockSolver<double, PlainNumbers<double, false>> solver_;
+};
 #endif
-extern template struct SoftSolver<Fixed>;
-extern template struct SoftSolver<CheckedFixed>;
+
+/// The soft step of a Space, but for what the Space knows.
+template <Scalar S>
+struct SoftStep {
+  SoftSettings<S> settings{};
+  /// The bodies that touch something; the first stands for all that never move.
+  std::vector<SoftStart<S>> starts;
+  /// Those that touch nothing, after the step.
+  std::vector<SoftMotion<S>> free;
+  /// Of the blocks, in their order.
+  std::vector<BlockGroup> groups;
+  SoftSolvers<S> solvers;
+
+  /// Forgets the last step.
+  void clear();
+  /// Adds a body that touches something, and says as which.
+  std::uint32_t add(const SoftStart<S>& start);
+  /// Makes all substeps of a body that touches nothing.
+  void addFree(const SoftStart<S>& start);
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template struct SoftStep<double>;
+#endif
+extern template struct SoftStep<Fixed>;
+extern template struct SoftStep<CheckedFixed>;
 
 }  // namespace samestep

@@ -657,8 +657,7 @@ void Space<S>::forceKernel(KernelTarget target) {
   requireUnlocked();
   require<Fault::KernelUnavailable>(isAvailable(target));
   impl_->kernel = nextBestKernel(target);
-  impl_->soft.setKernel(impl_->kernel);
-  impl_->fast.setKernel(impl_->kernel);
+  impl_->soft.solvers.setKernel(impl_->kernel);
 }
 
 template <Scalar S>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -10,7 +11,6 @@
 
 #include "contact_groups.h"
 #include "crew.h"
-#include "fast_step.h"
 #include "push_contacts.h"
 #include "sequential_impulse.h"
 #include "soft_step.h"
@@ -28,6 +28,18 @@ struct PlacedPose {
   friend bool operator==(const PlacedPose&, const PlacedPose&) = default;
 };
 
+/// Powers of two metres that shapes are measured in: none is taken to be smaller than the least.
+inline constexpr int kLeastExtentBits = -16;
+template <Scalar S>
+std::int8_t extentBits(S extent) {
+  if constexpr (FixedNumber<S>) {
+    return static_cast<std::int8_t>(
+        max(static_cast<int>(std::bit_width(raw::magnitude(extent.raw()))) - 32, kLeastExtentBits));
+  } else {
+    return 0;
+  }
+}
+
 /// What pairs ask about a shape, close together.
 template <Scalar S>
 struct ShapeTraits {
@@ -35,6 +47,7 @@ struct ShapeTraits {
   std::uint32_t body = 0;
   ShapeFilter filter{};
   std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
+  std::int8_t extentBits = kLeastExtentBits;  ///< None of the shape is farther from the origin than 2^this m.
   bool sensor = false;
   bool round = false;    ///< A circle.
   bool rounded = false;  ///< Has a radius: its surface may roll.
@@ -42,6 +55,7 @@ struct ShapeTraits {
   static ShapeTraits of(const Shape<S>& shape) {
     return {Surface<S>::of(shape), shape.body().index,
             shape.filter(),        static_cast<std::int32_t>(shape.extent()) + 1,
+            samestep::extentBits(shape.extent()),
             shape.sensor(),        shape.type() == ShapeType::circle,
             shape.radius() != S(0)};
   }
@@ -131,8 +145,8 @@ struct Space<S>::Impl : SpaceCache<S> {
 
   // Scratch: of one step.
   ImpulseSolver<S> solver;
-  SoftSolver<S> soft;
-  FastSolver<S> fast;
+  SoftStep<S> soft;
+  bool softBounces = false;
   ContactGroups groups;
   std::vector<std::uint32_t> solvedPairs;
   std::vector<std::uint32_t> groupOrder;

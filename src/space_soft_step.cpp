@@ -5,23 +5,85 @@
 
 namespace samestep {
 
+namespace {
+
+/// The power of two metres that nothing of a body is beyond, seen from its centre of mass.
+template <Scalar S, class Impl>
+int radiusBits(const Impl& impl, std::uint32_t index, const Body<S>& body) {
+  int bits = kLeastExtentBits;
+  for (std::uint32_t i = impl.firstShape[index]; i != Impl::kNone; i = impl.nextShape[i]) {
+    bits = max(bits, int{impl.traits[i].extentBits});
+  }
+  const Vector<S> center = body.centerOfMass();
+  return center == Vector<S>{} ? bits : max(bits, extentBits(max(abs(center.x), abs(center.y))) + 1) + 1;
+}
+
+/// Puts the pairs into blocks, group by group.
+/// @return false where a number does not fit
+template <Scalar S, class Solver, class Impl>
+bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs,
+               const SlotMap<Body<S>, BodyId>& bodies, S bounceThreshold) {
+  Finding misfit, bounces;
+  const auto takeBlock = [&](std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
+    solver.openBlock(block);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t index = impl.solvedPairs[impl.groupOrder[i]];
+      const Pair<S>& pair = pairs[index];
+      const ShapeTraits<S>& shapeA = impl.traits[pair.a.index];
+      const ShapeTraits<S>& shapeB = impl.traits[pair.b.index];
+      const std::uint32_t a = shapeA.body;
+      const std::uint32_t b = shapeB.body;
+      misfit.note(!solver.addPair(block, static_cast<int>(i - begin), pair, index, impl.solverIndex[a],
+                                  impl.solverIndex[b], bodies.valueAt(a), bodies.valueAt(b), shapeA.round,
+                                  shapeB.round, bounceThreshold));
+    }
+    solver.closeBlock(block, static_cast<int>(end - begin));
+    bounces.note(solver.bounces(block));
+  };
+  impl.crew.during(impl.crew.helpsWith(impl.solvedPairs.size(), Impl::kFewPairs), [&] {
+    std::uint32_t first = 0;
+    std::uint32_t group = 0;
+    for (const BlockGroup& blockGroup : impl.soft.groups) {
+      while (impl.groups.size(group) == 0) ++group;
+      const std::uint32_t count = impl.groups.size(group++);
+      const std::uint32_t lanes = blockGroup.inOrder ? 1 : kBlockLanes;
+      const std::uint32_t start = blockGroup.begin;
+      const auto take = [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) {
+          const std::uint32_t from = first + i * lanes;
+          takeBlock(start + i, from, min(from + lanes, first + count));
+        }
+      };
+      if (blockGroup.inOrder) {
+        take(0, blockGroup.end - start);
+      } else {
+        impl.crew.each(blockGroup.end - start, kBlockGrain, take);
+      }
+      first += count;
+    }
+  });
+  impl.softBounces = static_cast<bool>(bounces);
+  return !static_cast<bool>(misfit);
+}
+
+}  // namespace
+
 template <Scalar S>
 void Space<S>::softPreStep(S dt) {
-  Impl& impl = *impl_;
-  SoftSolver<S>& soft = impl.soft;
+  SoftStep<S>& soft = impl_->soft;
   const Settings<S>& settings = state_.settings;
   const S substep = dt / S(settings.substeps);
   const S perSubstep = reciprocal(max(substep, ratio<S>(1, 1 << 14)));
   const S hertz = min(settings.contactHertz, perSubstep * ratio<S>(1, 4));
-  soft.constants = {{makeSoftness(hertz, settings.contactDamping, substep),
-                     makeSoftness(S(2) * hertz, settings.contactDamping, substep)},
-                    substep,
-                    perSubstep,
-                    settings.contactPushSpeed,
-                    kMaxSum<S>,
-                    S(0)};
+  soft.settings = {{makeSoftness(hertz, settings.contactDamping, substep),
+                    makeSoftness(S(2) * hertz, settings.contactDamping, substep)},
+                   substep,
+                   perSubstep,
+                   settings.contactPushSpeed,
+                   settings.substeps};
   softFindGroups();
   softTakeBodies(dt);
+  soft.solvers.begin(settings.precision == ContactPrecision::fast);
   softTakePairs();
   endStage(Stage::preStep);
 }
@@ -51,45 +113,50 @@ void Space<S>::softFindGroups() {
 template <Scalar S>
 void Space<S>::softTakeBodies(S dt) {
   Impl& impl = *impl_;
-  SoftSolver<S>& soft = impl.soft;
-  const S substep = soft.constants.substep;
+  SoftStep<S>& soft = impl.soft;
+  const S substep = soft.settings.substep;
   const S keptInSubstep = damping() == S(1) ? S(1) : pow(damping(), substep);
   const S keptInStep = damping() == S(1) ? S(1) : pow(damping(), dt);
   soft.clear();
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
     Body<S>& body = state_.bodies.valueAt(i);
-    SoftDrive<SolverNumbers<S>> drive{};
-    drive.kept = S(1);
+    SoftStart<S> start;
     if (body.type() == BodyType::staticBody) {
       // Nothing moves it, and no function is asked to.
     } else if (body.velocityFunc() != 0) [[unlikely]] {
       callVelocityFunc(i, keptInStep, dt);
     } else if (body.isDynamic()) {
       const typename Body<S>::Motion motion = body.acceleration(gravity());
-      drive.push[0] = motion.velocity.x * substep;
-      drive.push[1] = motion.velocity.y * substep;
-      drive.push[2] = motion.angularVelocity * substep;
-      drive.kept = keptInSubstep;
+      start.push[0] = motion.velocity.x * substep;
+      start.push[1] = motion.velocity.y * substep;
+      start.push[2] = motion.angularVelocity * substep;
+      start.kept = keptInSubstep;
     }
     body.force_ = {};
     body.torque_ = S(0);
     if (body.type() == BodyType::staticBody) continue;
+    start.velocity[0] = body.velocity().x;
+    start.velocity[1] = body.velocity().y;
+    start.velocity[2] = body.angularVelocity();
     if (impl.solverIndex[i] == Impl::kNone) {
-      impl.solverIndex[i] = Impl::kFree | static_cast<std::uint32_t>(soft.freeBodies.size());
-      soft.addFree(body, drive, state_.settings.substeps);
+      impl.solverIndex[i] = Impl::kFree | static_cast<std::uint32_t>(soft.free.size());
+      soft.addFree(start);
     } else {
-      impl.solverIndex[i] = soft.addBody(body, drive);
+      start.momentPerMass = momentPerMass(body);
+      if constexpr (FixedNumber<S>) start.radiusBits = radiusBits(impl, i, body);
+      impl.solverIndex[i] = soft.add(start);
     }
   }
 }
 
-/// Puts the pairs into blocks, group by group.
+/// Lays out the blocks and has them filled by the first solver that holds all numbers.
 template <Scalar S>
 void Space<S>::softTakePairs() {
   Impl& impl = *impl_;
-  SoftSolver<S>& soft = impl.soft;
+  SoftStep<S>& soft = impl.soft;
   std::uint32_t blocks = 0;
+  soft.groups.clear();
   for (std::uint32_t group = 0; group < ContactGroups::kGroups; ++group) {
     // The pairs of the last group may share bodies.
     const bool inOrder = group == ContactGroups::kGroups - 1;
@@ -98,68 +165,34 @@ void Space<S>::softTakePairs() {
     if (pairs > 0) soft.groups.push_back({blocks, end, inOrder});
     blocks = end;
   }
-  soft.makeRoom();
-  Finding bounces;
-  impl.crew.during(impl.crew.helpsWith(impl.solvedPairs.size(), Impl::kFewPairs), [&] {
-    std::uint32_t first = 0;
-    std::uint32_t group = 0;
-    for (const BlockGroup& blockGroup : soft.groups) {
-      while (impl.groups.size(group) == 0) ++group;
-      const std::uint32_t pairs = impl.groups.size(group++);
-      const std::uint32_t lanes = blockGroup.inOrder ? 1 : kBlockLanes;
-      const std::uint32_t start = blockGroup.begin;
-      const auto take = [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) {
-          const std::uint32_t from = first + i * lanes;
-          softTakeBlock(start + i, from, min(from + lanes, first + pairs));
-          bounces.note(soft.blocks[start + i].bounces != 0);
-        }
-      };
-      if (blockGroup.inOrder) {
-        take(0, blockGroup.end - start);
-      } else {
-        impl.crew.each(blockGroup.end - start, kBlockGrain, take);
-      }
-      first += pairs;
-    }
-  });
-  soft.bounces = static_cast<bool>(bounces);
-}
-
-/// Puts the pairs from `begin` to `end` of those sorted by group into a block.
-template <Scalar S>
-void Space<S>::softTakeBlock(std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
-  Impl& impl = *impl_;
-  SoftSolver<S>& soft = impl.soft;
-  soft.openBlock(block);
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const std::uint32_t index = impl.solvedPairs[impl.groupOrder[i]];
-    const Pair<S>& pair = state_.pairs[index];
-    const ShapeTraits<S>& shapeA = impl.traits[pair.a.index];
-    const ShapeTraits<S>& shapeB = impl.traits[pair.b.index];
-    const std::uint32_t a = shapeA.body;
-    const std::uint32_t b = shapeB.body;
-    soft.addPair(block, static_cast<int>(i - begin), pair, index, impl.solverIndex[a], impl.solverIndex[b],
-                 state_.bodies.valueAt(a), state_.bodies.valueAt(b), shapeA.round, shapeB.round,
-                 state_.settings.bounceThreshold);
-  }
-  soft.closeBlock(block, static_cast<int>(end - begin));
+  const auto take = [&](auto& solver) {
+    return solver.begin(soft.settings, soft.starts, soft.groups) &&
+           takePairs(solver, impl, state_.pairs, state_.bodies, state_.settings.bounceThreshold);
+  };
+  while (!soft.solvers.with(take)) soft.solvers.fallBack();
 }
 
 template <Scalar S>
 void Space<S>::softSolve() {
-  SoftSolver<S>& soft = impl_->soft;
-  const int substeps = state_.settings.substeps;
-  const bool fast = state_.settings.precision == ContactPrecision::fast && soft.blockCount != 0;
-  if (fast) impl_->fast.makeRoom(soft);
-  Crew& crew = impl_->crew;
-  crew.during(crew.helpsWith(impl_->solvedPairs.size(), Impl::kFewPairs), [&] {
-    const bool solved = fast && impl_->fast.run(soft, substeps, crew);
-    if (fast && !solved) ++accurateInstead_;
-    if (!solved) soft.run(substeps, crew);
-    soft.bounce();
-    soft.store(state_.pairs, crew);
-  });
+  Impl& impl = *impl_;
+  SoftStep<S>& soft = impl.soft;
+  Crew& crew = impl.crew;
+  const auto run = [&](auto& solver) {
+    bool solved = false;
+    crew.during(crew.helpsWith(impl.solvedPairs.size(), Impl::kFewPairs), [&] {
+      solved = solver.run(crew);
+      if (!solved) return;
+      if (impl.softBounces) solver.bounce();
+      solver.store(state_.pairs, crew);
+    });
+    return solved;
+  };
+  while (!soft.solvers.with(run)) {
+    soft.solvers.fallBack();
+    softTakePairs();
+  }
+  const bool fast = state_.settings.precision == ContactPrecision::fast && !soft.groups.empty();
+  if (fast && !soft.solvers.isFast()) ++accurateInstead_;
   endStage(Stage::solve);
 }
 
@@ -178,24 +211,26 @@ void Space<S>::softFinish(S dt) {
 template <Scalar S>
 void Space<S>::softFinish(S dt, std::uint32_t begin, std::uint32_t end) {
   Impl& impl = *impl_;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    if (!state_.bodies.aliveAt(i)) continue;
-    Body<S>& body = state_.bodies.valueAt(i);
-    if (body.type() == BodyType::staticBody) continue;
-    const std::uint32_t index = impl.solverIndex[i];
-    const bool isFree = (index & Impl::kFree) != 0;
-    const auto& solved = isFree ? impl.soft.freeBodies[index & ~Impl::kFree] : impl.soft.bodies[index];
-    if (body.isDynamic()) {
-      // The substeps hold velocities, too.
-      impl.held[i] |= isFree ? impl.soft.freeHeld[index & ~Impl::kFree] : impl.soft.drives[index].held;
-      impl.held[i] |= body.holdVelocity({{solved.velocity[0], solved.velocity[1]}, solved.velocity[2]});
+  impl.soft.solvers.with([&](const auto& solver) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      if (!state_.bodies.aliveAt(i)) continue;
+      Body<S>& body = state_.bodies.valueAt(i);
+      if (body.type() == BodyType::staticBody) continue;
+      const std::uint32_t index = impl.solverIndex[i];
+      const SoftMotion<S> motion =
+          (index & Impl::kFree) != 0 ? impl.soft.free[index & ~Impl::kFree] : solver.motion(index);
+      if (body.isDynamic()) {
+        // The substeps hold velocities, too.
+        impl.held[i] |= motion.held;
+        impl.held[i] |= body.holdVelocity({{motion.velocity[0], motion.velocity[1]}, motion.velocity[2]});
+      }
+      if (body.positionFunc() != 0) [[unlikely]] {
+        callPositionFunc(i, dt);
+      } else {
+        impl.held[i] |= body.holdMoved({motion.moved[0], motion.moved[1]}, motion.moved[2], worldExtent());
+      }
     }
-    if (body.positionFunc() != 0) [[unlikely]] {
-      callPositionFunc(i, dt);
-    } else {
-      impl.held[i] |= body.holdMoved({solved.moved[0], solved.moved[1]}, solved.moved[2], worldExtent());
-    }
-  }
+  });
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

@@ -11,6 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "kernels/kernels.h"
+#include "kernels/scalar_lanes.h"
+#include "kernels/solve_contacts.h"
 #include "support/random.h"
 
 namespace samestep {
@@ -86,39 +88,40 @@ struct DoubleSource {
   void constants(SoftConstants<Numbers>& to) {
     to.softness[0] = {20, 0.75, 0.25};
     to.softness[1] = {30, 0.5, 0.5};
-    to.substep = 1.0 / 240;
     to.perSubstep = 240;
     to.pushSpeed = 3;
     to.mostSum = 1e6;
   }
 };
 
-struct FastSource {
-  using Numbers = FastNumbers;
+template <class N>
+struct IntegerSource {
+  using Numbers = N;
+  using Speed = typename N::Speed;
   Random random;
   /// Of speeds, ways and impulses.
   int bits = 20;
-  std::int32_t number(int width) {
-    return static_cast<std::int32_t>(static_cast<std::int64_t>(random.next()) >> (63 - width));
-  }
-  std::int32_t unit() { return number(Numbers::kUnitBits); }
-  std::int32_t part() { return number(Numbers::kUnitBits) & ((1 << Numbers::kUnitBits) - 1); }
-  std::int32_t friction() { return number(Numbers::kFrictionBits) & ((1 << Numbers::kFrictionBits) - 1); }
-  std::int32_t speed() { return number(bits); }
-  std::int32_t way() { return number(bits); }
-  std::int64_t sum() { return number(bits); }
-  std::int64_t positive() { return std::int64_t{number(bits)} & ((std::int64_t{1} << bits) - 1); }
-  void constants(SoftConstants<Numbers>& to) {
-    const std::int32_t one = 1 << Numbers::kUnitBits;
+  std::int64_t wide(int width) { return static_cast<std::int64_t>(random.next()) >> (63 - width); }
+  std::int32_t number(int width) { return static_cast<std::int32_t>(wide(width)); }
+  std::int32_t unit() { return number(N::kUnitBits); }
+  std::int32_t part() { return number(N::kUnitBits) & ((1 << N::kUnitBits) - 1); }
+  std::int32_t friction() { return number(N::kFrictionBits) & ((1 << N::kFrictionBits) - 1); }
+  Speed speed() { return static_cast<Speed>(wide(bits)); }
+  Speed way() { return static_cast<Speed>(wide(bits)); }
+  std::int64_t sum() { return wide(bits); }
+  std::int64_t positive() { return wide(bits) & ((std::int64_t{1} << bits) - 1); }
+  void constants(SoftConstants<N>& to) {
+    const std::int32_t one = 1 << N::kUnitBits;
     to.softness[0] = {20 << 16, one / 4 * 3, one / 4};
     to.softness[1] = {30 << 16, one / 2, one / 2};
-    to.substep = one / 240;
     to.perSubstep = 240 << 16;
     to.pushSpeed = 3 << 18;
     to.mostSum = std::int64_t{1} << 50;
     to.mostGap = (1 << 29) / 8;
   }
 };
+using FastSource = IntegerSource<FastNumbers>;
+using WideSource = IntegerSource<WideNumbers>;
 
 template <class Source, class N = typename Source::Numbers>
 Work<N> randomWork(Source& from) {
@@ -193,6 +196,14 @@ bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
 template <class N>
 using NamedPasses = std::vector<std::pair<std::string, const ContactPasses<N>*>>;
 
+NamedPasses<WideNumbers> wideKernels() {
+  NamedPasses<WideNumbers> all;
+  if (isAvailable(KernelTarget::sse42)) all.emplace_back("sse42", kernels::wideSse42);
+  if (isAvailable(KernelTarget::avx2)) all.emplace_back("avx2", kernels::wideAvx2);
+  if (isAvailable(KernelTarget::neon)) all.emplace_back("neon", kernels::wideNeon);
+  return all;
+}
+
 NamedPasses<FastNumbers> fastKernels() {
   NamedPasses<FastNumbers> all;
   if (isAvailable(KernelTarget::sse42)) all.emplace_back("sse42", kernels::fastSse42);
@@ -223,6 +234,29 @@ TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange
   // Both sides of the limit have been tried.
   EXPECT_GT(within, 300);
   EXPECT_GT(beyond, 300);
+}
+
+TEST(WideKernelTest, EveryKernelGivesTheBitsOfCheckedNumbersWhichReportNothing) {
+  const ContactPasses<WideNumbers> plain = kPassesOf<WideScalarLanes<Fixed>>;
+  const ContactPasses<WideNumbers> checked = kPassesOf<WideScalarLanes<CheckedFixed>>;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    WideSource source{Random(seed), 0};
+    // Up to 2^16 m/s, and 2^16 m.
+    source.bits = source.random.between(8, 48);
+    const Work<WideNumbers> start = randomWork(source);
+    Work<WideNumbers> expected = start;
+    ASSERT_NO_THROW(expected.run(checked)) << "seed " << seed;
+    ASSERT_FALSE(sameBytes(expected.bodies, start.bodies));
+    NamedPasses<WideNumbers> all = wideKernels();
+    all.emplace_back("portable", &plain);
+    for (const auto& [name, passes] : all) {
+      Work<WideNumbers> work = start;
+      ASSERT_EQ(work.run(*passes), 0u);
+      ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.rests, expected.rests)) << name << ", seed " << seed;
+    }
+  }
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

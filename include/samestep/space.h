@@ -627,7 +627,6 @@ class Space {
   void softFindGroups();
   void softTakeBodies(S dt);
   void softTakePairs();
-  void softTakeBlock(std::uint32_t block, std::uint32_t begin, std::uint32_t end);
   void softSolve();
   void softFinish(S dt);
   void softFinish(S dt, std::uint32_t begin, std::uint32_t end);

@@ -12,11 +12,14 @@ namespace samestep::kernels {
 extern const ContactPasses<PlainNumbers<double, false>> doubleBy2;
 extern const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2;
 
-/// One integer at a time.
+/// One integer at a time; what the wide ones do that way depends on the scalar, see scalar_lanes.h.
 extern const ContactPasses<FastNumbers> fastBy1;
 extern const ContactPasses<FastNumbers>* const fastSse42;
 extern const ContactPasses<FastNumbers>* const fastAvx2;
-/// Every processor of 64-bit ARM can run it.
+extern const ContactPasses<WideNumbers>* const wideSse42;
+extern const ContactPasses<WideNumbers>* const wideAvx2;
+/// Every processor of 64-bit ARM can run these.
 extern const ContactPasses<FastNumbers>* const fastNeon;
+extern const ContactPasses<WideNumbers>* const wideNeon;
 
 }  // namespace samestep::kernels

@@ -134,4 +134,98 @@ struct ScalarLanes {
   }
 };
 
+/// The wide kernel of integer_lanes.h, one number at a time in any fixed-point scalar: one that checks
+/// reports what does not fit.
+template <FixedNumber S>
+struct WideScalarLanes {
+  using V = S;
+  using Numbers = WideNumbers;
+  using Body = SoftBody<Numbers>;
+  static constexpr int kWidth = 1;
+
+  static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
+  static V zero() { return V(); }
+  static V whole() { return all(1 << Numbers::kUnitBits); }
+  static V all(std::int64_t x) { return S::fromRaw(x); }
+  static V load(const std::int32_t* from) { return all(*from); }
+  static V load(const std::int64_t* from) { return all(*from); }
+  static void store(std::int64_t* to, V v) { *to = v.raw(); }
+  static bool above(V x, V y) { return x > y; }
+  static V select(bool mask, V x, V y) { return mask ? x : y; }
+  static V greater(V x, V y) { return max(x, y); }
+  static V within(V x, V low, V high) { return clamp(x, low, high); }
+  static V dot2(V a, V b, V c, V d) { return over<Numbers::kUnitBits>(times(a, b) + times(c, d)); }
+  static V cross2(V a, V b, V c, V d) { return over<Numbers::kUnitBits>(times(a, b) - times(c, d)); }
+  static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
+    return over<Numbers::kUnitBits>(times(a0, b0) + times(a1, b1) + times(a2, b2) + times(a3, b3));
+  }
+  static V product(V unit, V x) { return over<Numbers::kUnitBits>(times(unit, x)); }
+  static V frictionLimit(V friction, V sum) { return over<Numbers::kFrictionBits>(times(friction, sum)); }
+  static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
+  static V rate(V way, std::int32_t rate) { return WideScalarLanes::rate(way, all(rate)); }
+  static V rate(V way, V rate) { return over<Numbers::kRateBits>(times(rate, way)); }
+  template <class Axis>
+  static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, V, V change) {
+    return over<Numbers::kSpinBits>(times(load(axis.spinA + lane), change));
+  }
+  template <class Axis>
+  static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, V, V change) {
+    return over<Numbers::kSpinBits>(times(load(axis.spinB + lane), change));
+  }
+  static V soften(const Softness<V>& soft, V full, V before) {
+    return dot2(soft.massScale, full, soft.impulseScale, before);
+  }
+  static V checked(V v) { return v; }
+  static std::uint64_t left() { return 0; }
+  static void note(const char* name, V v) { highWater<S>(name, v); }
+  static V unless(std::uint8_t bits, int lane, V v) { return (bits >> lane & 1) != 0 ? zero() : v; }
+  static Softness<V> softness(std::uint8_t stiff, int lane, const Softness<std::int32_t>* of) {
+    const Softness<std::int32_t>& chosen = of[stiff >> lane & 1];
+    return {all(chosen.biasRate), all(chosen.massScale), all(chosen.impulseScale)};
+  }
+
+  static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y, V& turn) {
+    const Body& body = bodies[*at];
+    x = all(body.velocity[0]);
+    y = all(body.velocity[1]);
+    turn = all(body.velocity[2]);
+  }
+  static void gatherMoved(const Body* bodies, const std::uint32_t* at, V& x, V& y, V& turn, V& bend) {
+    const Body& body = bodies[*at];
+    x = all(body.moved[0]);
+    y = all(body.moved[1]);
+    turn = all(body.moved[2]);
+    bend = all(body.moved[3]);
+  }
+  static void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x, V y, V turn) {
+    if ((fixed & 1) != 0) return;
+    std::int64_t* to = bodies[*at].velocity;
+    to[0] = x.raw();
+    to[1] = y.raw();
+    to[2] = turn.raw();
+  }
+
+ private:
+  /// high * 2^32 + low, both integers as S.
+  struct Products {
+    S high, low;
+    friend Products operator+(Products a, Products b) { return {a.high + b.high, a.low + b.low}; }
+    friend Products operator-(Products a, Products b) { return {a.high - b.high, a.low - b.low}; }
+  };
+  static Products times(S coefficient, S x) {
+    const std::int64_t c = static_cast<std::int32_t>(coefficient.raw());
+    const std::int64_t high = (x + all(std::int64_t{1} << 31)).raw() >> 32;
+    return {all(c * high), all(c * static_cast<std::int32_t>(x.raw()))};
+  }
+  template <int kBits>
+  static S over(Products x) {
+    const S high = all(static_cast<std::int64_t>(static_cast<std::uint64_t>(x.high.raw()) << (32 - kBits)));
+    if constexpr (S::kChecks) {
+      if (high.raw() >> (32 - kBits) != x.high.raw()) raw::report("contact", 32, {x.high.raw(), x.low.raw()});
+    }
+    const S toNearest = x.low + all((std::int64_t{1} << (kBits - 1)) - (x.low < S() ? 1 : 0));
+    return high + all(toNearest.raw() >> kBits);
+  }
+};
+
 }  // namespace samestep

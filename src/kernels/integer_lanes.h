@@ -11,17 +11,17 @@ namespace {
 /// What is the same for every number of 64-bit integers side by side. `Vectors` gives the vector, the product
 /// of the low 32 bits, and the shift. Every rounding is to nearest, ties away from zero: mirror images stay
 /// mirror images.
-template <class Vectors>
-class FastLanes {
+template <class Vectors, class N>
+class IntegerLanes {
  public:
-  using Numbers = FastNumbers;
-  using Body = SoftBody<Numbers>;
+  using Numbers = N;
+  using Body = SoftBody<N>;
   using V = typename Vectors::V;
   static constexpr int kWidth = sizeof(V) / sizeof(std::int64_t);
 
-  static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
+  static int pointsOf(const ContactBlock<N>& block, int) { return block.points; }
   [[gnu::always_inline]] static V zero() { return V{}; }
-  [[gnu::always_inline]] static V whole() { return all(1 << Numbers::kUnitBits); }
+  [[gnu::always_inline]] static V whole() { return all(1 << N::kUnitBits); }
   [[gnu::always_inline]] static V all(std::int64_t x) { return V{} + x; }
   [[gnu::always_inline]] static V load(const std::int32_t* from) { return Vectors::widen(from); }
   [[gnu::always_inline]] static V load(const std::int64_t* from) {
@@ -39,6 +39,44 @@ class FastLanes {
   [[gnu::always_inline]] static V within(V x, V low, V high) {
     return select(x < low, low, select(high < x, high, x));
   }
+  [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane,
+                                                     const Softness<std::int32_t>* of) {
+    return {choose(stiff, lane, of[1].biasRate, of[0].biasRate),
+            choose(stiff, lane, of[1].massScale, of[0].massScale),
+            choose(stiff, lane, of[1].impulseScale, of[0].impulseScale)};
+  }
+  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, V v) {
+    return v & ~Vectors::mask(bits >> lane);
+  }
+  static void note(const char*, V) {}
+
+  [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
+                                                    V& turn) {
+    V none;
+    Vectors::gather(bodies, &Body::velocity, at, x, y, turn, none);
+  }
+  [[gnu::always_inline]] static void gatherMoved(const Body* bodies, const std::uint32_t* at, V& x, V& y,
+                                                 V& turn, V& bend) {
+    Vectors::gather(bodies, &Body::moved, at, x, y, turn, bend);
+  }
+
+ private:
+  [[gnu::always_inline]] static V choose(std::uint8_t bits, int lane, std::int64_t in, std::int64_t out) {
+    return select(Vectors::mask(bits >> lane) != zero(), all(in), all(out));
+  }
+};
+
+/// Speeds of 32 bits.
+template <class Vectors>
+class FastLanes : public IntegerLanes<Vectors, FastNumbers> {
+  using Base = IntegerLanes<Vectors, FastNumbers>;
+
+ public:
+  using Numbers = FastNumbers;
+  using Body = SoftBody<Numbers>;
+  using V = typename Vectors::V;
+  using Base::all, Base::load, Base::within;
+
   [[gnu::always_inline]] static V dot2(V a, V b, V c, V d) {
     return rounded<Numbers::kUnitBits>(multiply(a, b) + multiply(c, d));
   }
@@ -72,19 +110,9 @@ class FastLanes {
                                         V change) {
     return rounded<Numbers::kSpinBits>(multiply(load(axis.spinB + lane), change));
   }
-  [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane,
-                                                     const Softness<std::int32_t>* of) {
-    return {choose(stiff, lane, of[1].biasRate, of[0].biasRate),
-            choose(stiff, lane, of[1].massScale, of[0].massScale),
-            choose(stiff, lane, of[1].impulseScale, of[0].impulseScale)};
-  }
   [[gnu::always_inline]] static V soften(const Softness<V>& soft, V full, V before) {
     return product(soft.massScale, full) + longProduct<Numbers::kUnitBits>(soft.impulseScale, before);
   }
-  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, V v) {
-    return v & ~Vectors::mask(bits >> lane);
-  }
-  static void note(const char*, V) {}
 
   /// Notes where a number leaves the range.
   [[gnu::always_inline]] V checked(V v) {
@@ -93,18 +121,8 @@ class FastLanes {
   }
   std::uint64_t left() const {
     std::uint64_t any = 0;
-    for (int i = 0; i < kWidth; ++i) any |= Vectors::at(left_, i) >> 31;
+    for (int i = 0; i < Base::kWidth; ++i) any |= Vectors::at(left_, i) >> 31;
     return any;
-  }
-
-  [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
-                                                    V& turn) {
-    V none;
-    Vectors::gather(bodies, &Body::velocity, at, x, y, turn, none);
-  }
-  [[gnu::always_inline]] static void gatherMoved(const Body* bodies, const std::uint32_t* at, V& x, V& y,
-                                                 V& turn, V& bend) {
-    Vectors::gather(bodies, &Body::moved, at, x, y, turn, bend);
   }
   [[gnu::always_inline]] void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x, V y,
                                               V turn) {
@@ -127,11 +145,86 @@ class FastLanes {
     return Vectors::template down<kBits>(multiply(factor, low) + half) +
            (multiply(factor, high) << (31 - kBits));
   }
-  [[gnu::always_inline]] static V choose(std::uint8_t bits, int lane, std::int64_t in, std::int64_t out) {
-    return select(Vectors::mask(bits >> lane) != zero(), all(in), all(out));
-  }
 
   V left_{};
+};
+
+/// Speeds of 64 bits. A number is split at bit 32, its low half having a sign of its own, so that a product
+/// with a coefficient is two of 32 by 32 bits, exact; one rounding ends each sum of products. The mirror image
+/// of a number has the mirror images of its halves, but for a low half of -2^31, which has no part to round.
+template <class Vectors>
+class WideLanes : public IntegerLanes<Vectors, WideNumbers> {
+  using Base = IntegerLanes<Vectors, WideNumbers>;
+
+ public:
+  using Numbers = WideNumbers;
+  using Body = SoftBody<Numbers>;
+  using V = typename Vectors::V;
+  using Base::all, Base::load;
+
+  [[gnu::always_inline]] static V dot2(V a, V b, V c, V d) {
+    return (times(a, b) + times(c, d)).template over<Numbers::kUnitBits>();
+  }
+  [[gnu::always_inline]] static V cross2(V a, V b, V c, V d) {
+    return (times(a, b) - times(c, d)).template over<Numbers::kUnitBits>();
+  }
+  [[gnu::always_inline]] static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
+    return (times(a0, b0) + times(a1, b1) + times(a2, b2) + times(a3, b3))
+        .template over<Numbers::kUnitBits>();
+  }
+  [[gnu::always_inline]] static V product(V unit, V x) {
+    return times(unit, x).template over<Numbers::kUnitBits>();
+  }
+  [[gnu::always_inline]] static V frictionLimit(V friction, V sum) {
+    return times(friction, sum).template over<Numbers::kFrictionBits>();
+  }
+  [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
+  [[gnu::always_inline]] static V rate(V way, std::int32_t rate) { return WideLanes::rate(way, all(rate)); }
+  [[gnu::always_inline]] static V rate(V way, V rate) {
+    return times(rate, way).template over<Numbers::kRateBits>();
+  }
+  template <class Axis>
+  [[gnu::always_inline]] static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, V,
+                                        V change) {
+    return times(load(axis.spinA + lane), change).template over<Numbers::kSpinBits>();
+  }
+  template <class Axis>
+  [[gnu::always_inline]] static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, V,
+                                        V change) {
+    return times(load(axis.spinB + lane), change).template over<Numbers::kSpinBits>();
+  }
+  [[gnu::always_inline]] static V soften(const Softness<V>& soft, V full, V before) {
+    return dot2(soft.massScale, full, soft.impulseScale, before);
+  }
+  /// Its ranges are kept by contract, see docs/ranges.md.
+  [[gnu::always_inline]] static V checked(V v) { return v; }
+  static std::uint64_t left() { return 0; }
+  [[gnu::always_inline]] static void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x,
+                                                     V y, V turn) {
+    Vectors::scatter(bodies, at, fixed, x, y, turn);
+  }
+
+ private:
+  /// high * 2^32 + low.
+  struct Products {
+    V high, low;
+
+    [[gnu::always_inline]] friend Products operator+(const Products& a, const Products& b) {
+      return {a.high + b.high, a.low + b.low};
+    }
+    [[gnu::always_inline]] friend Products operator-(const Products& a, const Products& b) {
+      return {a.high - b.high, a.low - b.low};
+    }
+    /// By 2^bits.
+    template <int kBits>
+    [[gnu::always_inline]] V over() const {
+      return (high << (32 - kBits)) + Vectors::template rounded<kBits>(low);
+    }
+  };
+  [[gnu::always_inline]] static Products times(V coefficient, V x) {
+    return {Vectors::multiply(coefficient, Vectors::template down<32>(x + (std::int64_t{1} << 31))),
+            Vectors::multiply(coefficient, x)};
+  }
 };
 
 /// What vectors have in common whose processor shifts unsigned 64-bit numbers only. `Types` names the
@@ -153,7 +246,7 @@ struct UnsignedShifts : Types {
   }
 };
 
-/// One at a time, on every machine.
+/// One at a time, on every machine: for the fast kernel.
 struct OneInteger {
   using V = std::int64_t;
   using Loose = V;

@@ -2,18 +2,20 @@
 #include "kernels.h"
 
 #ifdef __aarch64__
-#include "fast_lanes_neon.h"
+#include "integers_neon.h"
 #include "solve_contacts.h"
 
 namespace samestep::kernels {
 
 const ContactPasses<FastNumbers>* const fastNeon = &kPassesOf<FastLanes<TwoIntegersOfNeon>>;
+const ContactPasses<WideNumbers>* const wideNeon = &kPassesOf<WideLanes<TwoIntegersOfNeon>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
 const ContactPasses<FastNumbers>* const fastNeon = nullptr;
+const ContactPasses<WideNumbers>* const wideNeon = nullptr;
 
 }  // namespace samestep::kernels
 #endif

@@ -3,7 +3,7 @@
 
 #include <arm_neon.h>
 
-#include "fast_lanes.h"
+#include "integer_lanes.h"
 
 namespace samestep {
 namespace {
@@ -13,7 +13,8 @@ struct TwoIntegersOfNeon {
   using V [[gnu::vector_size(16), gnu::may_alias]] = std::int64_t;
   using U [[gnu::vector_size(16), gnu::may_alias]] = std::uint64_t;
   using Loose [[gnu::vector_size(16), gnu::may_alias, gnu::aligned(8)]] = std::int64_t;
-  using Body = SoftBody<FastNumbers>;
+  using Fast = SoftBody<FastNumbers>;
+  using Wide = SoftBody<WideNumbers>;
 
   [[gnu::always_inline]] static V widen(const std::int32_t* from) {
     return reinterpret_cast<V>(vmovl_s32(vld1_s32(from)));
@@ -33,7 +34,7 @@ struct TwoIntegersOfNeon {
   [[gnu::always_inline]] static V mask(int bits) { return V{-(bits & 1), -(bits >> 1 & 1)}; }
   [[gnu::always_inline]] static std::uint64_t at(V v, int i) { return static_cast<std::uint64_t>(v[i]); }
 
-  [[gnu::always_inline]] static void gather(const Body* bodies, std::int32_t (Body::*part)[4],
+  [[gnu::always_inline]] static void gather(const Fast* bodies, std::int32_t (Fast::*part)[4],
                                             const std::uint32_t* at, V& x, V& y, V& z, V& w) {
     const int32x4_t a = vld1q_s32(bodies[at[0]].*part);
     const int32x4_t b = vld1q_s32(bodies[at[1]].*part);
@@ -44,7 +45,7 @@ struct TwoIntegersOfNeon {
     z = reinterpret_cast<V>(vmovl_s32(vget_low_s32(zw)));
     w = reinterpret_cast<V>(vmovl_high_s32(zw));
   }
-  [[gnu::always_inline]] static void scatter(Body* bodies, const std::uint32_t* at, int fixed, V x, V y,
+  [[gnu::always_inline]] static void scatter(Fast* bodies, const std::uint32_t* at, int fixed, V x, V y,
                                              V turn) {
     for (int i = 0; i < 2; ++i) {
       if ((fixed >> i & 1) != 0) continue;
@@ -52,6 +53,25 @@ struct TwoIntegersOfNeon {
       to[0] = static_cast<std::int32_t>(x[i]);
       to[1] = static_cast<std::int32_t>(y[i]);
       to[2] = static_cast<std::int32_t>(turn[i]);
+    }
+  }
+  [[gnu::always_inline]] static void gather(const Wide* bodies, std::int64_t (Wide::*part)[4],
+                                            const std::uint32_t* at, V& x, V& y, V& z, V& w) {
+    const V* a = reinterpret_cast<const V*>(bodies[at[0]].*part);
+    const V* b = reinterpret_cast<const V*>(bodies[at[1]].*part);
+    x = __builtin_shufflevector(a[0], b[0], 0, 2);
+    y = __builtin_shufflevector(a[0], b[0], 1, 3);
+    z = __builtin_shufflevector(a[1], b[1], 0, 2);
+    w = __builtin_shufflevector(a[1], b[1], 1, 3);
+  }
+  [[gnu::always_inline]] static void scatter(Wide* bodies, const std::uint32_t* at, int fixed, V x, V y,
+                                             V turn) {
+    for (int i = 0; i < 2; ++i) {
+      if ((fixed >> i & 1) != 0) continue;
+      std::int64_t* to = bodies[at[i]].velocity;
+      to[0] = x[i];
+      to[1] = y[i];
+      to[2] = turn[i];
     }
   }
 };

@@ -3,18 +3,20 @@
 #include "kernels.h"
 
 #ifdef __AVX2__
-#include "fast_lanes4.h"
+#include "integers4.h"
 #include "solve_contacts.h"
 
 namespace samestep::kernels {
 
 const ContactPasses<FastNumbers>* const fastAvx2 = &kPassesOf<FastLanes<FourIntegers>>;
+const ContactPasses<WideNumbers>* const wideAvx2 = &kPassesOf<WideLanes<FourIntegers>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
 const ContactPasses<FastNumbers>* const fastAvx2 = nullptr;
+const ContactPasses<WideNumbers>* const wideAvx2 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

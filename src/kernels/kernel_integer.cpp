@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fast_lanes.h"
+#include "integer_lanes.h"
 #include "kernels.h"
 #include "solve_contacts.h"
 

@@ -3,18 +3,20 @@
 #include "kernels.h"
 
 #ifdef __SSE4_2__
-#include "fast_lanes2.h"
+#include "integers2.h"
 #include "solve_contacts.h"
 
 namespace samestep::kernels {
 
 const ContactPasses<FastNumbers>* const fastSse42 = &kPassesOf<FastLanes<TwoIntegers>>;
+const ContactPasses<WideNumbers>* const wideSse42 = &kPassesOf<WideLanes<TwoIntegers>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
 const ContactPasses<FastNumbers>* const fastSse42 = nullptr;
+const ContactPasses<WideNumbers>* const wideSse42 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

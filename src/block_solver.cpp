@@ -1,0 +1,543 @@
+// SPDX-License-Identifier: MIT
+#include "block_solver.h"
+
+#include <samestep/high_water.h>
+
+#include "contact_geometry.h"
+#include "contact_row.h"
+#include "kernels/kernels.h"
+#include "kernels/scalar_lanes.h"
+#include "kernels/solve_contacts.h"
+#include "require_ieee.h"
+
+namespace samestep {
+namespace {
+
+template <class S, class N>
+ContactPasses<N> passesFor(KernelTarget target) {
+  if constexpr (std::same_as<N, WideNumbers>) {
+    // A scalar that checks has one kernel, which tells.
+    if constexpr (!S::kChecks) {
+      if (target == KernelTarget::avx2 && kernels::wideAvx2 != nullptr) return *kernels::wideAvx2;
+      if (target == KernelTarget::neon && kernels::wideNeon != nullptr) return *kernels::wideNeon;
+      if (target == KernelTarget::sse42 && kernels::wideSse42 != nullptr) return *kernels::wideSse42;
+    }
+    return kPassesOf<WideScalarLanes<S>>;
+  } else if constexpr (std::same_as<N, FastNumbers>) {
+    if (target == KernelTarget::avx2 && kernels::fastAvx2 != nullptr) return *kernels::fastAvx2;
+    if (target == KernelTarget::neon && kernels::fastNeon != nullptr) return *kernels::fastNeon;
+    if (target == KernelTarget::sse42 && kernels::fastSse42 != nullptr) return *kernels::fastSse42;
+    return kernels::fastBy1;
+  } else if constexpr (FixedNumber<S>) {
+    return kPassesOf<ScalarLanes<S>>;
+  } else {
+    if (target == KernelTarget::avx2 && kernels::doubleAvx2 != nullptr) return *kernels::doubleAvx2;
+    return kernels::doubleBy2;
+  }
+}
+
+template <class N>
+void clearAxis(BlockAxis<N>& axis, int lane) {
+  using Coefficient = typename N::Coefficient;
+  axis.armA[lane] = axis.armB[lane] = axis.mass[lane] = Coefficient(0);
+  axis.sum[lane] = typename N::Sum(0);
+  if constexpr (N::kStoresSpins) axis.spinA[lane] = axis.spinB[lane] = Coefficient(0);
+}
+
+/// A point that changes nothing.
+template <class N>
+void clearPoint(ContactBlock<N>& block, BlockRest<N>& rest, int lane, int point) {
+  clearAxis(block.point[point].normal, lane);
+  clearAxis(block.point[point].tangent, lane);
+  block.point[point].separation[lane] = typename N::Speed(0);
+  rest.normalTotal[point][lane] = rest.tangentTotal[point][lane] = rest.bounce[point][lane] =
+      typename N::Sum(0);
+}
+
+/// Of a contact's points, from the centres of mass, each in the coordinates of its body.
+template <Scalar S>
+struct AnchorArms {
+  Vector<S> a, b;
+};
+template <Scalar S>
+AnchorArms<S> anchorArms(const Contact<S>& contact, const Body<S>& a, const Body<S>& b) {
+  return {contact.anchorA - a.centerOfMass(), contact.anchorB - b.centerOfMass()};
+}
+
+/// As respond(), from the bodies' own moments by mass.
+template <Scalar S>
+PairResponse<S> respondWith(const Body<S>& a, S momentPerMassA, const Body<S>& b, S momentPerMassB) {
+  const Scaled<S> none{};
+  if (b.inverseMass() == none) return {S(1), S(0), momentPerMassA, S(0)};
+  if (a.inverseMass() == none) return {S(0), S(1), S(0), momentPerMassB};
+  if (a.inverseMass() == b.inverseMass()) return {S(1), S(1), momentPerMassA, momentPerMassB};
+  const bool aIsLighter = a.inverseMass() > b.inverseMass();
+  const S heavy = aIsLighter ? toScalar<S>(b.inverseMass() * toScaled(a.mass()))
+                             : toScalar<S>(a.inverseMass() * toScaled(b.mass()));
+  if (aIsLighter) return {S(1), heavy, momentPerMassA, momentPerMassB * heavy};
+  return {heavy, S(1), momentPerMassA * heavy, momentPerMassB};
+}
+
+/// A speed as a scalar, in its own unit, and back: not for numbers of 32 bits.
+template <class S, class T>
+S asScalar(T x) {
+  if constexpr (std::same_as<S, T>) {
+    return x;
+  } else {
+    return S::fromRaw(x);
+  }
+}
+template <class T, class S>
+T asSpeed(S x) {
+  if constexpr (std::same_as<S, T>) {
+    return x;
+  } else {
+    return static_cast<T>(x.raw());
+  }
+}
+
+}  // namespace
+
+template <Scalar S, class N>
+BlockSolver<S, N>::BlockSolver() : passes_(passesFor<S, N>(nextBestKernel(KernelTarget::best))) {}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::setKernel(KernelTarget target) {
+  passes_ = passesFor<S, N>(target);
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
+                              const std::vector<BlockGroup>& groups) {
+  settings_ = &settings;
+  starts_ = &starts;
+  groups_ = &groups;
+  if (!units_.choose(settings, starts)) return false;
+  constants_ = units_.constants(settings, kMaxSum<S>);
+  bodies_.assign(starts.size(), {});
+  drives_.resize(starts.size());
+  held_.assign(starts.size(), 0);
+  std::int64_t misfit = 0;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const SoftStart<S>& from = starts[i];
+    SoftBody<N>& body = bodies_[i];
+    SoftDrive<N>& drive = drives_[i];
+    for (int k = 0; k < 2; ++k) {
+      body.velocity[k] = units_.speed(from.velocity[k], misfit);
+      drive.push[k] = units_.speed(from.push[k], misfit);
+    }
+    body.velocity[2] = units_.turn(from.velocity[2], from.radiusBits, misfit);
+    drive.push[2] = units_.turn(from.push[2], from.radiusBits, misfit);
+    if constexpr (std::same_as<N, FastNumbers>) {
+      drive.push[3] = units_.unit(from.kept);
+    } else {
+      drive.push[3] = asSpeed<Speed>(from.kept);
+    }
+    for (int k = 0; k < 3; ++k) drive.base[k] = body.velocity[k];
+    drive.base[3] = Speed(0);
+  }
+  blockCount_ = groups.empty() ? 0 : groups.back().end;
+  if (blocks_.size() < blockCount_) {
+    blocks_.resize(blockCount_);
+    rests_.resize(blockCount_);
+  }
+  return misfit == 0;
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::openBlock(std::uint32_t at) {
+  Block& block = blocks_[at];
+  block.points = block.bounces = block.roundA = block.roundB = block.stiff = 0;
+  block.fixedA = block.fixedB = 0;
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::closeBlock(std::uint32_t at, int lanes) {
+  using Coefficient = typename N::Coefficient;
+  Block& block = blocks_[at];
+  Rest& rest = rests_[at];
+  for (int lane = lanes; lane < kBlockLanes; ++lane) {
+    const auto bit = static_cast<std::uint8_t>(1 << lane);
+    block.fixedA = static_cast<std::uint8_t>(block.fixedA | bit);
+    block.fixedB = static_cast<std::uint8_t>(block.fixedB | bit);
+    block.bodyA[lane] = block.bodyB[lane] = 0;
+    block.count[lane] = 0;
+    block.normalX[lane] = block.normalY[lane] = block.shareA[lane] = Coefficient(0);
+    block.friction[lane] = Coefficient(0);
+    block.surface[lane] = Speed(0);
+    if constexpr (!N::kStoresSpins) {
+      block.moments.momentA[lane] = block.moments.momentB[lane] = Coefficient(0);
+    }
+    rest.pair[lane] = Rest::kNoPair;
+    for (int i = 0; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, lane, i);
+  }
+}
+
+/// Takes from a body's base what contacts gave its velocity: (x, y), and the spin.
+template <Scalar S, class N>
+void BlockSolver<S, N>::give(std::uint32_t body, S x, S y, S turn, std::int64_t& misfit) {
+  Speed* const base = drives_[body].base;
+  const auto add = [&](Speed& to, Speed change) {
+    if constexpr (std::same_as<N, FastNumbers>) {
+      const std::int64_t sum = std::int64_t{to} + change;
+      to = static_cast<Speed>(sum);
+      misfit |= sum ^ to;
+    } else {
+      to = asSpeed<Speed>(asScalar<S>(to) + asScalar<S>(change));
+    }
+  };
+  add(base[0], units_.speed(x, misfit));
+  add(base[1], units_.speed(y, misfit));
+  add(base[2], units_.turn(turn, (*starts_)[body].radiusBits, misfit));
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex,
+                                std::uint32_t indexA, std::uint32_t indexB, const Body<S>& a,
+                                const Body<S>& b, bool roundA, bool roundB, S bounceThreshold) {
+  Block& block = blocks_[at];
+  Rest& rest = rests_[at];
+  const SoftStart<S>& startA = (*starts_)[indexA];
+  const SoftStart<S>& startB = (*starts_)[indexB];
+  const int radiusA = startA.radiusBits;
+  const int radiusB = startB.radiusBits;
+  std::int64_t misfit = 0;
+  const PairResponse<S> response = respondWith(a, startA.momentPerMass, b, startB.momentPerMass);
+  const S masses = response.massA + response.massB;
+  const bool alone = masses == S(1);
+  const bool equal = masses == S(2);
+  const S perMass = alone ? S(1) : equal ? ratio<S>(1, 2) : reciprocal(masses);
+  const auto bit = static_cast<std::uint8_t>(1 << lane);
+  const auto mark = [&](std::uint8_t& bits, bool set) {
+    if (set) bits = static_cast<std::uint8_t>(bits | bit);
+  };
+  const Vector<S> n = worldNormal(pair, a);
+  block.bodyA[lane] = indexA;
+  block.bodyB[lane] = indexB;
+  block.count[lane] = pair.count;
+  block.points = max(block.points, pair.count);
+  mark(block.fixedA, !a.isDynamic());
+  mark(block.fixedB, !b.isDynamic());
+  mark(block.roundA, roundA);
+  mark(block.roundB, roundB);
+  mark(block.stiff, !a.isDynamic() || !b.isDynamic());
+  block.normalX[lane] = units_.unit(n.x);
+  block.normalY[lane] = units_.unit(n.y);
+  const S shareA = response.massA * perMass;
+  const S shareB = S(1) - shareA;
+  block.shareA[lane] = units_.unit(shareA);
+  block.friction[lane] = units_.friction(pair.friction);
+  block.surface[lane] = units_.speed(cross(n, pair.surfaceVelocity), misfit);
+  rest.pair[lane] = pairIndex;
+
+  // An arm by the normal is the same in the body's coordinates, where points and A's normal are kept.
+  const Vector<S> nA = pair.localNormal;
+  const Vector<S> nB = unrotate(n, b.rotation());
+  const S between = dot(n, b.worldCenter() - a.worldCenter());
+  S normalPart = S(0), tangentPart = S(0), turnA = S(0), turnB = S(0);
+  Vector<S> reachA, reachB;
+  for (int i = 0; i < pair.count; ++i) {
+    const auto [toA, toB] = anchorArms(pair.contacts[i], a, b);
+    reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
+    reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
+  }
+  const PairResponse<S> held = response.at(reachA, reachB);
+  const S momentA = held.momentA * perMass;
+  const S momentB = held.momentB * perMass;
+  if constexpr (!N::kStoresSpins) {
+    block.moments.momentA[lane] = momentA;
+    block.moments.momentB[lane] = momentB;
+  }
+  const auto keptSum = [&](S speed) { return alone ? speed : equal ? speed + speed : speed * masses; };
+  for (int i = 0; i < pair.count; ++i) {
+    const Contact<S>& contact = pair.contacts[i];
+    auto& point = block.point[i];
+    const auto fill = [&](auto& axis, S inA, S inB, S kept) {
+      const S turnPerA = momentA * inA;
+      const S turnPerB = momentB * inB;
+      axis.armA[lane] = units_.arm(inA, radiusA);
+      axis.armB[lane] = units_.arm(inB, radiusB);
+      axis.mass[lane] = units_.inverse(S(1) + dot(turnPerA, inA, turnPerB, inB));
+      axis.sum[lane] = units_.sum(kept);
+      if constexpr (N::kStoresSpins) {
+        axis.spinA[lane] = units_.spin(turnPerA, radiusA, misfit);
+        axis.spinB[lane] = units_.spin(turnPerB, radiusB, misfit);
+      }
+      turnA += turnPerA * kept;
+      turnB += turnPerB * kept;
+      // Of a body that nothing turns the arm counts for nothing.
+      highWater<S>("contact: r x n of a body that turns", held.momentA > S(0) ? inA : S(0));
+      highWater<S>("contact: r x n of a body that turns", held.momentB > S(0) ? inB : S(0));
+      highWater<S>("contact: spin per unit of u", max(abs(turnPerA), abs(turnPerB)));
+      highWater<S>("contact: kept impulse u", kept);
+    };
+    const auto [toA, toB] = anchorArms(contact, a, b);
+    // r x t is r . n.
+    const S depthA = dot(toA, nA);
+    const S depthB = dot(toB, nB);
+    const S armA = cross(toA, nA);
+    const S armB = cross(toB, nB);
+    const S normalKept = clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>);
+    const S tangentKept = clamp(keptSum(contact.tangentSpeed), -kMaxSum<S>, kMaxSum<S>);
+    fill(point.normal, armA, armB, normalKept);
+    fill(point.tangent, depthA, depthB, tangentKept);
+    point.separation[lane] = units_.way(clamp(between + (depthB - depthA), S(-(1 << 10)), S(1 << 10)));
+    normalPart += normalKept;
+    tangentPart += tangentKept;
+    rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = rest.bounce[i][lane] = typename N::Sum(0);
+    if (pair.elasticity == S(0)) continue;
+    const Vector<S> dv = b.velocity() - a.velocity();
+    const S approach =
+        dot(n.x, dv.x, n.y, dv.y) + cross(armB, b.angularVelocity(), armA, a.angularVelocity());
+    if (approach < -bounceThreshold) {
+      rest.bounce[i][lane] = units_.sum(-(pair.elasticity * approach));
+      block.bounces = 1;
+    }
+  }
+  for (int i = pair.count; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, lane, i);
+  const S x = cross(n.x, normalPart, n.y, tangentPart);
+  const S y = dot(n.y, normalPart, n.x, tangentPart);
+  if (a.isDynamic()) give(indexA, shareA * x, shareA * y, turnA, misfit);
+  if (b.isDynamic()) give(indexB, shareB * -x, shareB * -y, -turnB, misfit);
+  return misfit == 0;
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::run(Crew& crew) {
+  const auto count = static_cast<std::uint32_t>(bodies_.size());
+  Finding left;
+  const auto pass = [&](ContactPass<N> kernel) {
+    left.note(passOverGroups(kernel, blocks_, rests_, *groups_, bodies_, constants_, crew));
+  };
+  for (int i = 0; i < settings_->substeps; ++i) {
+    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      left.note(integrateVelocities(begin, end) != 0);
+    });
+    pass(passes_.solve);
+    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      left.note(integratePositions(begin, end) != 0);
+    });
+    pass(passes_.relax);
+    if (left) return false;
+  }
+  return true;
+}
+
+/// What contacts gave a velocity in the last substep is its difference from the base, and is given again.
+template <Scalar S, class N>
+std::uint64_t BlockSolver<S, N>::integrateVelocities(std::uint32_t begin, std::uint32_t end) {
+  std::uint64_t left = 0;
+  const auto hold = [&](std::uint32_t body, int k) {
+    held_[body] = static_cast<std::uint8_t>(held_[body] | (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
+  };
+  if constexpr (std::same_as<N, FastNumbers>) {
+    constexpr std::int64_t kMost = N::kRange - 1;
+    const int speedBits = units_.speedBits();
+    const std::int64_t mostSpeed = min(units::shifted(kMaxSpeed<S>.raw(), 32 - speedBits), kMost);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      SoftBody<N>& body = bodies_[i];
+      SoftDrive<N>& drive = drives_[i];
+      const std::int64_t mostTurn = min(
+          units::shifted(kMaxAngularSpeed<S>.raw(), 32 - speedBits - units_.radius((*starts_)[i].radiusBits)),
+          kMost);
+      for (int k = 0; k < 3; ++k) {
+        const std::int64_t given = std::int64_t{body.velocity[k]} - drive.base[k];
+        const std::int64_t limit = k == 2 ? mostTurn : mostSpeed;
+        const std::int64_t free =
+            units::shifted(std::int64_t{body.velocity[k]} * drive.push[3], N::kUnitBits) + drive.push[k];
+        const std::int64_t base = clamp(free, -limit, limit);
+        if (base != free) [[unlikely]]
+          hold(i, k);
+        const std::int64_t speed = base + given;
+        drive.base[k] = static_cast<Speed>(base);
+        body.velocity[k] = static_cast<Speed>(speed);
+        left |= static_cast<std::uint64_t>(speed + N::kRange) >> 31;
+      }
+    }
+  } else {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      SoftBody<N>& body = bodies_[i];
+      SoftDrive<N>& drive = drives_[i];
+      const S kept = asScalar<S>(drive.push[3]);
+      std::int64_t misfit = 0;
+      const S limits[3] = {kMaxSpeed<S>, kMaxSpeed<S>,
+                           asScalar<S>(units_.turn(kMaxAngularSpeed<S>, (*starts_)[i].radiusBits, misfit))};
+      for (int k = 0; k < 3; ++k) {
+        const S velocity = asScalar<S>(body.velocity[k]);
+        const S push = asScalar<S>(drive.push[k]);
+        const S given = velocity - asScalar<S>(drive.base[k]);
+        const S free = kept == S(1) ? velocity + push : mulAdd(velocity, kept, push);
+        const S base = clamp(free, -limits[k], limits[k]);
+        if (base != free) [[unlikely]]
+          hold(i, k);
+        drive.base[k] = asSpeed<Speed>(base);
+        body.velocity[k] = asSpeed<Speed>(base + given);
+      }
+    }
+  }
+  return left;
+}
+
+/// Beyond half a radian the bend is no longer a parabola; the contact is found anew next step.
+template <Scalar S, class N>
+std::uint64_t BlockSolver<S, N>::integratePositions(std::uint32_t begin, std::uint32_t end) {
+  std::uint64_t left = 0;
+  if constexpr (std::same_as<N, FastNumbers>) {
+    const std::int64_t substep =
+        units::shifted(settings_->substep.raw(), 32 - units_.finer() - N::kUnitBits);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      SoftBody<N>& body = bodies_[i];
+      for (int k = 0; k < 3; ++k) {
+        const std::int64_t way = body.moved[k] + units::shifted(body.velocity[k] * substep, N::kUnitBits);
+        body.moved[k] = static_cast<Speed>(way);
+        left |= static_cast<std::uint64_t>(way + N::kRange) >> 31;
+      }
+      // Half the square of the angle, as a way at the radius.
+      const int perRadius = units_.wayBits() + units_.radius((*starts_)[i].radiusBits);
+      const std::int64_t bend =
+          units::shifted(std::int64_t{body.moved[2]} * body.moved[2], perRadius + 1);
+      body.moved[3] = static_cast<Speed>(min(bend, min(units::shifted(1, 3 - perRadius), N::kRange - 1)));
+    }
+  } else {
+    const S half = ratio<S>(1, 2);
+    const S most = ratio<S>(1, 8);
+    S substep = settings_->substep;
+    if constexpr (std::same_as<N, WideNumbers>) substep = S::fromRaw(substep.raw() << units_.finer());
+    for (std::uint32_t i = begin; i < end; ++i) {
+      SoftBody<N>& body = bodies_[i];
+      for (int k = 0; k < 3; ++k) {
+        body.moved[k] = asSpeed<Speed>(
+            mulAdd(asScalar<S>(body.velocity[k]), substep, asScalar<S>(body.moved[k])));
+      }
+      if constexpr (std::same_as<N, WideNumbers>) {
+        const int perRadius = units_.finer() + units_.radius((*starts_)[i].radiusBits);
+        const S angle = S::fromRaw(units::shifted(body.moved[2], perRadius));
+        body.moved[3] = min(angle * angle * half, most).raw() << perRadius;
+      } else {
+        body.moved[3] = min(body.moved[2] * body.moved[2] * half, most);
+      }
+    }
+  }
+  return left;
+}
+
+template <Scalar S, class N>
+SoftMotion<S> BlockSolver<S, N>::motion(std::uint32_t index) const {
+  const SoftStart<S>& start = (*starts_)[index];
+  const SoftBody<N>& body = bodies_[index];
+  SoftMotion<S> motion;
+  motion.held = held_[index];
+  for (int k = 0; k < 3; ++k) {
+    const int radius = k == 2 ? start.radiusBits : 0;
+    if constexpr (std::same_as<N, FastNumbers>) {
+      // What is finer than the unit of this step stays.
+      std::int64_t misfit = 0;
+      const Speed from =
+          k == 2 ? units_.turn(start.velocity[k], radius, misfit) : units_.speed(start.velocity[k], misfit);
+      const Speed change = static_cast<Speed>(body.velocity[k] - from);
+      motion.velocity[k] =
+          start.velocity[k] + (k == 2 ? units_.fromTurn(change, radius) : units_.fromSpeed(change));
+    } else {
+      motion.velocity[k] =
+          k == 2 ? units_.fromTurn(body.velocity[k], radius) : units_.fromSpeed(body.velocity[k]);
+    }
+    motion.moved[k] = units_.fromWay(body.moved[k], radius);
+  }
+  return motion;
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::bounce() {
+  for (std::uint32_t i = 0; i < blockCount_; ++i) {
+    Block& block = blocks_[i];
+    if (block.bounces == 0) continue;
+    Rest& rest = rests_[i];
+    for (int lane = 0; lane < kBlockLanes; ++lane) {
+      const std::uint32_t indexA = block.bodyA[lane], indexB = block.bodyB[lane];
+      const int radiusA = (*starts_)[indexA].radiusBits, radiusB = (*starts_)[indexB].radiusBits;
+      const Vector<S> n(units_.fromUnit(block.normalX[lane]), units_.fromUnit(block.normalY[lane]));
+      const S shareA = units_.fromUnit(block.shareA[lane]);
+      for (int k = 0; k < block.count[lane]; ++k) {
+        auto& axis = block.point[k].normal;
+        const S wanted = units_.fromSum(rest.bounce[k][lane]);
+        if (wanted == S(0) || units_.fromSum(rest.normalTotal[k][lane]) == S(0)) continue;
+        const auto speedOf = [&](std::uint32_t body, int which) {
+          return units_.fromSpeed(bodies_[body].velocity[which]);
+        };
+        const S speed =
+            dot(n.x, speedOf(indexB, 0) - speedOf(indexA, 0), n.y, speedOf(indexB, 1) - speedOf(indexA, 1)) +
+            cross(units_.fromArm(axis.armB[lane], radiusB),
+                  units_.fromTurn(bodies_[indexB].velocity[2], radiusB),
+                  units_.fromArm(axis.armA[lane], radiusA),
+                  units_.fromTurn(bodies_[indexA].velocity[2], radiusA));
+        const S before = units_.fromSum(axis.sum[lane]);
+        const S after = clamp(before + units_.fromUnit(axis.mass[lane]) * (wanted - speed), S(0), kMaxSum<S>);
+        const S change = after - before;
+        axis.sum[lane] = units_.sum(after);
+        rest.normalTotal[k][lane] = units_.sum(units_.fromSum(rest.normalTotal[k][lane]) + change);
+        const auto push = [&](std::uint32_t index, S share, S along, S turn, int radiusBits) {
+          SoftBody<N>& body = bodies_[index];
+          std::int64_t misfit = 0;
+          body.velocity[0] = units_.speed(speedOf(index, 0) + share * (n.x * along), misfit);
+          body.velocity[1] = units_.speed(speedOf(index, 1) + share * (n.y * along), misfit);
+          body.velocity[2] =
+              units_.turn(units_.fromTurn(body.velocity[2], radiusBits) + turn, radiusBits, misfit);
+        };
+        const auto spin = [&](bool ofB) {
+          if constexpr (N::kStoresSpins) {
+            return ofB ? units_.fromSpin(axis.spinB[lane], radiusB) : units_.fromSpin(axis.spinA[lane], radiusA);
+          } else {
+            return ofB ? block.moments.momentB[lane] * axis.armB[lane]
+                       : block.moments.momentA[lane] * axis.armA[lane];
+          }
+        };
+        if ((block.fixedA >> lane & 1) == 0) push(indexA, shareA, -change, -(spin(false) * change), radiusA);
+        if ((block.fixedB >> lane & 1) == 0) {
+          push(indexB, S(1) - shareA, change, spin(true) * change, radiusB);
+        }
+      }
+    }
+  }
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::store(std::vector<Pair<S>>& pairs, Crew& crew) const {
+  crew.each(blockCount_, kBlockGrain, [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) storeBlock(i, pairs);
+  });
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const {
+  const Block& block = blocks_[at];
+  const Rest& rest = rests_[at];
+  for (int lane = 0; lane < kBlockLanes; ++lane) {
+    if (rest.pair[lane] == Rest::kNoPair) continue;
+    // The lighter body has the larger share.
+    const S shareA = units_.fromUnit(block.shareA[lane]);
+    const S lighter = max(shareA, S(1) - shareA);
+    Pair<S>& pair = pairs[rest.pair[lane]];
+    for (int k = 0; k < block.count[lane]; ++k) {
+      Contact<S>& contact = pair.contacts[k];
+      const S normalTotal = units_.fromSum(rest.normalTotal[k][lane]);
+      const S tangentTotal = units_.fromSum(rest.tangentTotal[k][lane]);
+      contact.normalSpeed = units_.fromSum(block.point[k].normal.sum[lane]) * lighter;
+      contact.tangentSpeed = units_.fromSum(block.point[k].tangent.sum[lane]) * lighter;
+      contact.normalTotal = min(normalTotal, kMaxSum<S>) * lighter;
+      contact.tangentTotal = clamp(tangentTotal, -kMaxSum<S>, kMaxSum<S>) * lighter;
+      highWater<S>("soft step: impulse total", normalTotal);
+    }
+  }
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class BlockSolver<double, PlainNumbers<double, false>>;
+#endif
+template class BlockSolver<Fixed, PlainNumbers<Fixed, true>>;
+template class BlockSolver<Fixed, WideNumbers>;
+template class BlockSolver<Fixed, FastNumbers>;
+template class BlockSolver<CheckedFixed, PlainNumbers<CheckedFixed, true>>;
+template class BlockSolver<CheckedFixed, WideNumbers>;
+template class BlockSolver<CheckedFixed, FastNumbers>;
+
+}  // namespace samestep

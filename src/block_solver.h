@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <samestep/arbiter.h>
+#include <samestep/body.h>
+#include <samestep/kernel.h>
+
+#include "block_groups.h"
+#include "contact_block.h"
+#include "soft_units.h"
+
+namespace samestep {
+
+/// The pairs of a soft step, prepared for the kernels of one kind of numbers, and the substeps.
+template <Scalar S, class N>
+class BlockSolver {
+ public:
+  using Numbers = N;
+
+  BlockSolver();
+
+  /// @param target  one that is available
+  void setKernel(KernelTarget target);
+  /// Takes bodies, whose first stands for all that never move, and makes room for the groups, whose blocks are
+  /// then to be filled.
+  /// @return false where the numbers of the step do not fit
+  bool begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
+             const std::vector<BlockGroup>& groups);
+  /// Readies a block, whose lanes hold anything.
+  void openBlock(std::uint32_t at);
+  /// Puts a pair into a lane of a block and gives its kept impulses to the bodies.
+  /// @return false where a number does not fit
+  bool addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
+               std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA, bool roundB,
+               S bounceThreshold);
+  /// Empties the lanes of a block that hold no pair.
+  void closeBlock(std::uint32_t at, int lanes);
+  /// Whether any point of the block may bounce.
+  bool bounces(std::uint32_t at) const { return blocks_[at].bounces != 0; }
+  /// Makes all substeps.
+  /// @return false where a number left the range on the way: nothing is then worth anything
+  bool run(Crew& crew);
+  /// After the last one: what bounces.
+  void bounce();
+  SoftMotion<S> motion(std::uint32_t body) const;
+  /// Writes the impulses back.
+  void store(std::vector<Pair<S>>& pairs, Crew& crew) const;
+
+ private:
+  using Block = ContactBlock<N>;
+  using Rest = BlockRest<N>;
+  using Speed = typename N::Speed;
+
+  void give(std::uint32_t body, S x, S y, S turn, std::int64_t& misfit);
+  std::uint64_t integrateVelocities(std::uint32_t begin, std::uint32_t end);
+  std::uint64_t integratePositions(std::uint32_t begin, std::uint32_t end);
+  void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
+
+  const SoftSettings<S>* settings_ = nullptr;
+  const std::vector<SoftStart<S>>* starts_ = nullptr;
+  const std::vector<BlockGroup>* groups_ = nullptr;
+  SoftUnits<S, N> units_;
+  SoftConstants<N> constants_{};
+  ContactPasses<N> passes_;
+  std::vector<SoftBody<N>> bodies_;
+  std::vector<SoftDrive<N>> drives_;
+  std::vector<std::uint8_t> held_;
+  /// The first blockCount_ are in use; the rest keep their memory.
+  std::vector<Block> blocks_;
+  std::vector<Rest> rests_;
+  std::uint32_t blockCount_ = 0;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class BlockSolver<double, PlainNumbers<double, false>>;
+#endif
+extern template class BlockSolver<Fixed, PlainNumbers<Fixed, true>>;
+extern template class BlockSolver<Fixed, WideNumbers>;
+extern template class BlockSolver<Fixed, FastNumbers>;
+extern template class BlockSolver<CheckedFixed, PlainNumbers<CheckedFixed, true>>;
+extern template class BlockSolver<CheckedFixed, WideNumbers>;
+extern template class BlockSolver<CheckedFixed, FastNumbers>;
+
+}  // namespace samestep
