@@ -3,6 +3,8 @@
 
 #include <samestep/high_water.h>
 
+#include <bit>
+
 #include "contact_geometry.h"
 #include "contact_row.h"
 #include "kernels/kernels.h"
@@ -78,6 +80,69 @@ PairResponse<S> respondWith(const Body<S>& a, S momentPerMassA, const Body<S>& b
   return {heavy, S(1), momentPerMassA * heavy, momentPerMassB};
 }
 
+/// The largest inverse moment by the squared radius that integers hold, in units of spins: 16 and more.
+constexpr std::int64_t kMostMoment = std::int64_t{1} << 32;
+
+/// factor * x / 2^bits of an impulse.
+template <class N, int kBits>
+[[gnu::always_inline]] inline std::int64_t impulseBy(std::int32_t factor, std::int64_t x) {
+  // Two impulses of 32 bits and a factor of one more leave no 64.
+  if constexpr (sizeof(typename N::Sum) == 4) return units::rounded<kBits>(factor * x);
+  return units::scaled<kBits>(factor, x);
+}
+
+/// One body of a pair, in units of its radius.
+template <class S, class N>
+class IntegerSide {
+ public:
+  /// Where a contact point is, by the normal: across it and along it, by the radius, and along it in metres.
+  struct Place {
+    std::int32_t across, along;
+    S depth;
+  };
+
+  /// @param normal  in the body's coordinates
+  /// @param moment  how an impulse at the radius turns it, in units of spins
+  [[gnu::always_inline]] IntegerSide(const Vector<S>& normal, const Vector<S>& center, int radiusBits,
+                                     std::int64_t moment)
+      : normal_(normal),
+        center_(center),
+        x_(Units::unit(normal.x)),
+        y_(Units::unit(normal.y)),
+        radiusBits_(Units::radius(radiusBits)),
+        moment_(moment) {}
+
+  [[gnu::always_inline]] Place place(const Vector<S>& anchor) const {
+    const Vector<S> to = anchor - center_;
+    // No arm matters of what does not move.
+    if (radiusBits_ == kAnyRadiusBits) return {0, 0, dot(to, normal_)};
+    const std::int64_t x = Units::arm(to.x, radiusBits_), y = Units::arm(to.y, radiusBits_);
+    const std::int32_t across = held(units::rounded<N::kUnitBits>(x * y_ - y * x_));
+    const std::int32_t along = held(units::rounded<N::kUnitBits>(x * x_ + y * y_));
+    // To 2^-27 m and better.
+    if (radiusBits_ <= 3) [[likely]]
+      return {across, along, Units::fromArm(along, radiusBits_)};
+    return {across, along, dot(to, normal_)};
+  }
+  [[gnu::always_inline]] std::int32_t spin(std::int32_t arm, std::int64_t& misfit) const {
+    const std::int64_t spin = units::rounded<N::kUnitBits>(moment_ * arm);
+    misfit |= spin ^ static_cast<std::int32_t>(spin);
+    return static_cast<std::int32_t>(spin);
+  }
+
+ private:
+  using Units = SoftUnits<S, N>;
+  [[gnu::always_inline]] static std::int32_t held(std::int64_t x) {
+    constexpr std::int64_t kOne = std::int64_t{1} << N::kUnitBits;
+    return static_cast<std::int32_t>(clamp(x, -kOne, kOne));
+  }
+
+  Vector<S> normal_, center_;
+  std::int64_t x_, y_;
+  int radiusBits_;
+  std::int64_t moment_;
+};
+
 /// A speed as a scalar, in its own unit, and back: not for numbers of 32 bits.
 template <class S, class T>
 S asScalar(T x) {
@@ -108,18 +173,23 @@ void BlockSolver<S, N>::setKernel(KernelTarget target) {
 
 template <Scalar S, class N>
 bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
-                              const std::vector<BlockGroup>& groups) {
+                              const std::vector<BlockGroup>& groups, S mostKept) {
   settings_ = &settings;
   starts_ = &starts;
   groups_ = &groups;
-  if (!units_.choose(settings, starts)) return false;
+  if (!units_.choose(settings, starts, mostKept)) return false;
   constants_ = units_.constants(settings, kMaxSum<S>);
   bodies_.assign(starts.size(), {});
   drives_.resize(starts.size());
   held_.assign(starts.size(), 0);
+  if constexpr (kIntegers) moments_.resize(starts.size());
   std::int64_t misfit = 0;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const SoftStart<S>& from = starts[i];
+    if constexpr (kIntegers) {
+      const int perRadius = 32 - N::kSpinBits - 2 * units_.radius(from.radiusBits);
+      moments_[i] = min(units::shifted(from.momentPerMass.raw(), perRadius), kMostMoment + 1);
+    }
     SoftBody<N>& body = bodies_[i];
     SoftDrive<N>& drive = drives_[i];
     for (int k = 0; k < 2; ++k) {
@@ -147,7 +217,7 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
 template <Scalar S, class N>
 void BlockSolver<S, N>::openBlock(std::uint32_t at) {
   Block& block = blocks_[at];
-  block.points = block.bounces = block.roundA = block.roundB = block.stiff = 0;
+  block.points = block.bounces = block.roundA = block.roundB = block.stiff = block.frictionShift = 0;
   block.fixedA = block.fixedB = 0;
 }
 
@@ -156,7 +226,7 @@ void BlockSolver<S, N>::closeBlock(std::uint32_t at, int lanes) {
   using Coefficient = typename N::Coefficient;
   Block& block = blocks_[at];
   Rest& rest = rests_[at];
-  for (int lane = lanes; lane < kBlockLanes; ++lane) {
+  for (int lane = lanes; lane < N::kLanes; ++lane) {
     const auto bit = static_cast<std::uint8_t>(1 << lane);
     block.fixedA = static_cast<std::uint8_t>(block.fixedA | bit);
     block.fixedB = static_cast<std::uint8_t>(block.fixedB | bit);
@@ -175,21 +245,38 @@ void BlockSolver<S, N>::closeBlock(std::uint32_t at, int lanes) {
 
 /// Takes from a body's base what contacts gave its velocity: (x, y), and the spin.
 template <Scalar S, class N>
-void BlockSolver<S, N>::give(std::uint32_t body, S x, S y, S turn, std::int64_t& misfit) {
-  Speed* const base = drives_[body].base;
-  const auto add = [&](Speed& to, Speed change) {
-    if constexpr (std::same_as<N, FastNumbers>) {
-      const std::int64_t sum = std::int64_t{to} + change;
-      to = static_cast<Speed>(sum);
-      misfit |= sum ^ to;
-    } else {
-      to = asSpeed<Speed>(asScalar<S>(to) + asScalar<S>(change));
-    }
-  };
-  add(base[0], units_.speed(x, misfit));
-  add(base[1], units_.speed(y, misfit));
-  add(base[2], units_.turn(turn, (*starts_)[body].radiusBits, misfit));
+void BlockSolver<S, N>::give(std::uint32_t body, S x, S y, S turn) {
+  if constexpr (!kIntegers) {
+    Speed* const base = drives_[body].base;
+    base[0] += x;
+    base[1] += y;
+    base[2] += turn;
+  }
 }
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::give(std::uint32_t body, std::int64_t x, std::int64_t y, std::int64_t turn,
+                             std::int64_t& misfit)
+requires BlockSolver<S, N>::kIntegers
+{
+  Speed* const base = drives_[body].base;
+  const std::int64_t given[3] = {x, y, turn};
+  for (int k = 0; k < 3; ++k) {
+    const std::int64_t sum = base[k] + given[k];
+    base[k] = static_cast<Speed>(sum);
+    misfit |= sum ^ base[k];
+  }
+}
+
+/// What the points of a pair are filled from.
+template <Scalar S, class N>
+struct BlockSolver<S, N>::Frames {
+  const Body<S>&a, &b;
+  std::uint32_t indexA, indexB;
+  PairResponse<S> response;
+  Vector<S> normal;
+  S perMass, shareA, bounceThreshold;
+};
 
 template <Scalar S, class N>
 bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex,
@@ -197,16 +284,10 @@ bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair,
                                 const Body<S>& b, bool roundA, bool roundB, S bounceThreshold) {
   Block& block = blocks_[at];
   Rest& rest = rests_[at];
-  const SoftStart<S>& startA = (*starts_)[indexA];
-  const SoftStart<S>& startB = (*starts_)[indexB];
-  const int radiusA = startA.radiusBits;
-  const int radiusB = startB.radiusBits;
-  std::int64_t misfit = 0;
-  const PairResponse<S> response = respondWith(a, startA.momentPerMass, b, startB.momentPerMass);
+  const PairResponse<S> response =
+      respondWith(a, (*starts_)[indexA].momentPerMass, b, (*starts_)[indexB].momentPerMass);
   const S masses = response.massA + response.massB;
-  const bool alone = masses == S(1);
-  const bool equal = masses == S(2);
-  const S perMass = alone ? S(1) : equal ? ratio<S>(1, 2) : reciprocal(masses);
+  const S perMass = masses == S(1) ? S(1) : masses == S(2) ? ratio<S>(1, 2) : reciprocal(masses);
   const auto bit = static_cast<std::uint8_t>(1 << lane);
   const auto mark = [&](std::uint8_t& bits, bool set) {
     if (set) bits = static_cast<std::uint8_t>(bits | bit);
@@ -224,81 +305,177 @@ bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair,
   block.normalX[lane] = units_.unit(n.x);
   block.normalY[lane] = units_.unit(n.y);
   const S shareA = response.massA * perMass;
-  const S shareB = S(1) - shareA;
   block.shareA[lane] = units_.unit(shareA);
-  block.friction[lane] = units_.friction(pair.friction);
+  setFriction(block, lane, pair.friction);
+  std::int64_t misfit = 0;
   block.surface[lane] = units_.speed(cross(n, pair.surfaceVelocity), misfit);
   rest.pair[lane] = pairIndex;
+  for (int i = pair.count; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, lane, i);
+  const Frames frames{a, b, indexA, indexB, response, n, perMass, shareA, bounceThreshold};
+  return fillPoints(block, rest, lane, pair, frames) && misfit == 0;
+}
 
+template <Scalar S, class N>
+void BlockSolver<S, N>::setFriction(Block& block, int lane, S friction) {
+  if constexpr (std::same_as<N, FastNumbers>) {
+    // Below 8 as it is; all of a block have one unit.
+    const S most = min(friction, S(511));
+    const int whole = max(static_cast<int>(std::bit_width(raw::magnitude(most.raw()))) - 35, 0);
+    if (whole > block.frictionShift) {
+      for (int i = 0; i < lane; ++i) block.friction[i] >>= whole - block.frictionShift;
+      block.frictionShift = static_cast<std::uint8_t>(whole);
+    }
+    block.friction[lane] = static_cast<std::int32_t>(
+        min(units::shifted(most.raw(), 32 - N::kFrictionBits + block.frictionShift), std::int64_t{0x7fffffff}));
+  } else if constexpr (kIntegers) {
+    // Held at 511: hardly anything slips at a tenth of it.
+    block.friction[lane] =
+        static_cast<std::int32_t>(units::shifted(min(friction, S(511)).raw(), 32 - N::kFrictionBits));
+  } else {
+    block.friction[lane] = friction;
+  }
+}
+
+/// Fills the points of a pair and gives their kept impulses to the bodies.
+template <Scalar S, class N>
+bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pair<S>& pair,
+                                   const Frames& of) {
+  const auto& [a, b, indexA, indexB, response, n, perMass, shareA, bounceThreshold] = of;
+  const S masses = response.massA + response.massB;
+  const bool alone = masses == S(1);
+  const bool equal = masses == S(2);
+  const auto keptSum = [&](S speed) { return alone ? speed : equal ? speed + speed : speed * masses; };
+  const auto bounceOf = [&](S armA, S armB) {
+    if (pair.elasticity == S(0)) return S(0);
+    const Vector<S> dv = b.velocity() - a.velocity();
+    const S approach =
+        dot(n.x, dv.x, n.y, dv.y) + cross(armB, b.angularVelocity(), armA, a.angularVelocity());
+    if (approach >= -bounceThreshold) return S(0);
+    block.bounces = 1;
+    return -(pair.elasticity * approach);
+  };
   // An arm by the normal is the same in the body's coordinates, where points and A's normal are kept.
   const Vector<S> nA = pair.localNormal;
   const Vector<S> nB = unrotate(n, b.rotation());
   const S between = dot(n, b.worldCenter() - a.worldCenter());
-  S normalPart = S(0), tangentPart = S(0), turnA = S(0), turnB = S(0);
-  Vector<S> reachA, reachB;
-  for (int i = 0; i < pair.count; ++i) {
-    const auto [toA, toB] = anchorArms(pair.contacts[i], a, b);
-    reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
-    reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
-  }
-  const PairResponse<S> held = response.at(reachA, reachB);
-  const S momentA = held.momentA * perMass;
-  const S momentB = held.momentB * perMass;
-  if constexpr (!N::kStoresSpins) {
-    block.moments.momentA[lane] = momentA;
-    block.moments.momentB[lane] = momentB;
-  }
-  const auto keptSum = [&](S speed) { return alone ? speed : equal ? speed + speed : speed * masses; };
-  for (int i = 0; i < pair.count; ++i) {
-    const Contact<S>& contact = pair.contacts[i];
-    auto& point = block.point[i];
-    const auto fill = [&](auto& axis, S inA, S inB, S kept) {
-      const S turnPerA = momentA * inA;
-      const S turnPerB = momentB * inB;
-      axis.armA[lane] = units_.arm(inA, radiusA);
-      axis.armB[lane] = units_.arm(inB, radiusB);
-      axis.mass[lane] = units_.inverse(S(1) + dot(turnPerA, inA, turnPerB, inB));
-      axis.sum[lane] = units_.sum(kept);
-      if constexpr (N::kStoresSpins) {
-        axis.spinA[lane] = units_.spin(turnPerA, radiusA, misfit);
-        axis.spinB[lane] = units_.spin(turnPerB, radiusB, misfit);
+  const auto apart = [&](S depthA, S depthB) {
+    return units_.way(clamp(between + (depthB - depthA), S(-(1 << 10)), S(1 << 10)));
+  };
+  std::int64_t misfit = 0;
+  if constexpr (kIntegers) {
+    const std::int32_t share = block.shareA[lane];
+    const std::int32_t shareB = (1 << N::kUnitBits) - share;
+    const std::int64_t momentA = response.momentA == S(0) ? 0 : moments_[indexA];
+    const std::int64_t momentB = response.momentB == S(0) ? 0 : moments_[indexB];
+    if (momentA > kMostMoment || momentB > kMostMoment) return false;
+    const IntegerSide<S, N> sideA(nA, a.centerOfMass(), (*starts_)[indexA].radiusBits,
+                                  units::scaled<N::kUnitBits>(share, momentA));
+    const IntegerSide<S, N> sideB(nB, b.centerOfMass(), (*starts_)[indexB].radiusBits,
+                                  units::scaled<N::kUnitBits>(shareB, momentB));
+    std::int64_t normalPart = 0, tangentPart = 0, turnA = 0, turnB = 0;
+    for (int i = 0; i < pair.count; ++i) {
+      const Contact<S>& contact = pair.contacts[i];
+      auto& point = block.point[i];
+      const auto fill = [&](auto& axis, std::int32_t armA, std::int32_t armB,
+                            typename N::Sum kept) __attribute__((always_inline)) {
+        axis.armA[lane] = armA;
+        axis.armB[lane] = armB;
+        axis.spinA[lane] = sideA.spin(armA, misfit);
+        axis.spinB[lane] = sideB.spin(armB, misfit);
+        // 1 and more, in units of masses.
+        const std::int64_t k =
+            (std::int64_t{1} << N::kUnitBits) +
+            ((std::int64_t{axis.spinA[lane]} * armA + std::int64_t{axis.spinB[lane]} * armB) >> N::kSpinBits);
+        constexpr std::uint64_t one = std::uint64_t{1} << (2 * N::kUnitBits);
+        axis.mass[lane] =
+            static_cast<std::int32_t>((one + static_cast<std::uint64_t>(k) / 2) / static_cast<std::uint64_t>(k));
+        axis.sum[lane] = kept;
+        turnA += impulseBy<N, N::kSpinBits>(axis.spinA[lane], kept);
+        turnB += impulseBy<N, N::kSpinBits>(axis.spinB[lane], kept);
+        highWater<S>("contact: kept impulse u", units_.fromSum(kept));
+      };
+      const auto placeA = sideA.place(contact.anchorA);
+      const auto placeB = sideB.place(contact.anchorB);
+      const auto normalKept =
+          units_.sum(clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>), misfit);
+      const auto tangentKept =
+          units_.sum(clamp(keptSum(contact.tangentSpeed), -kMaxSum<S>, kMaxSum<S>), misfit);
+      fill(point.normal, placeA.across, placeB.across, normalKept);
+      // r x t is r . n.
+      fill(point.tangent, placeA.along, placeB.along, tangentKept);
+      point.separation[lane] = apart(placeA.depth, placeB.depth);
+      normalPart += normalKept;
+      tangentPart += tangentKept;
+      rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = 0;
+      rest.bounce[i][lane] = 0;
+      if (pair.elasticity != S(0)) {
+        rest.bounce[i][lane] =
+            units_.sum(bounceOf(units_.fromArm(placeA.across, (*starts_)[indexA].radiusBits),
+                                units_.fromArm(placeB.across, (*starts_)[indexB].radiusBits)),
+                       misfit);
       }
-      turnA += turnPerA * kept;
-      turnB += turnPerB * kept;
-      // Of a body that nothing turns the arm counts for nothing.
-      highWater<S>("contact: r x n of a body that turns", held.momentA > S(0) ? inA : S(0));
-      highWater<S>("contact: r x n of a body that turns", held.momentB > S(0) ? inB : S(0));
-      highWater<S>("contact: spin per unit of u", max(abs(turnPerA), abs(turnPerB)));
-      highWater<S>("contact: kept impulse u", kept);
-    };
-    const auto [toA, toB] = anchorArms(contact, a, b);
-    // r x t is r . n.
-    const S depthA = dot(toA, nA);
-    const S depthB = dot(toB, nB);
-    const S armA = cross(toA, nA);
-    const S armB = cross(toB, nB);
-    const S normalKept = clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>);
-    const S tangentKept = clamp(keptSum(contact.tangentSpeed), -kMaxSum<S>, kMaxSum<S>);
-    fill(point.normal, armA, armB, normalKept);
-    fill(point.tangent, depthA, depthB, tangentKept);
-    point.separation[lane] = units_.way(clamp(between + (depthB - depthA), S(-(1 << 10)), S(1 << 10)));
-    normalPart += normalKept;
-    tangentPart += tangentKept;
-    rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = rest.bounce[i][lane] = typename N::Sum(0);
-    if (pair.elasticity == S(0)) continue;
-    const Vector<S> dv = b.velocity() - a.velocity();
-    const S approach =
-        dot(n.x, dv.x, n.y, dv.y) + cross(armB, b.angularVelocity(), armA, a.angularVelocity());
-    if (approach < -bounceThreshold) {
-      rest.bounce[i][lane] = units_.sum(-(pair.elasticity * approach));
-      block.bounces = 1;
     }
+    const auto along = [&](std::int32_t by, std::int64_t part) { return impulseBy<N, N::kUnitBits>(by, part); };
+    const std::int64_t x = along(block.normalX[lane], normalPart) - along(block.normalY[lane], tangentPart);
+    const std::int64_t y = along(block.normalY[lane], normalPart) + along(block.normalX[lane], tangentPart);
+    if (a.isDynamic()) give(indexA, along(share, x), along(share, y), turnA, misfit);
+    if (b.isDynamic()) give(indexB, -along(shareB, x), -along(shareB, y), -turnB, misfit);
+  } else {
+    S normalPart = S(0), tangentPart = S(0), turnA = S(0), turnB = S(0);
+    Vector<S> reachA, reachB;
+    for (int i = 0; i < pair.count; ++i) {
+      const auto [toA, toB] = anchorArms(pair.contacts[i], a, b);
+      reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
+      reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
+    }
+    const PairResponse<S> held = response.at(reachA, reachB);
+    const S momentA = held.momentA * perMass;
+    const S momentB = held.momentB * perMass;
+    if constexpr (!N::kStoresSpins) {
+      block.moments.momentA[lane] = momentA;
+      block.moments.momentB[lane] = momentB;
+    }
+    for (int i = 0; i < pair.count; ++i) {
+      const Contact<S>& contact = pair.contacts[i];
+      auto& point = block.point[i];
+      const auto fill = [&](auto& axis, S inA, S inB, S kept) {
+        const S turnPerA = momentA * inA;
+        const S turnPerB = momentB * inB;
+        axis.armA[lane] = inA;
+        axis.armB[lane] = inB;
+        axis.mass[lane] = reciprocal(S(1) + dot(turnPerA, inA, turnPerB, inB));
+        axis.sum[lane] = kept;
+        if constexpr (N::kStoresSpins) {
+          axis.spinA[lane] = turnPerA;
+          axis.spinB[lane] = turnPerB;
+        }
+        turnA += turnPerA * kept;
+        turnB += turnPerB * kept;
+        // Of a body that nothing turns the arm counts for nothing.
+        highWater<S>("contact: r x n of a body that turns", held.momentA > S(0) ? inA : S(0));
+        highWater<S>("contact: r x n of a body that turns", held.momentB > S(0) ? inB : S(0));
+        highWater<S>("contact: spin per unit of u", max(abs(turnPerA), abs(turnPerB)));
+        highWater<S>("contact: kept impulse u", kept);
+      };
+      const auto [toA, toB] = anchorArms(contact, a, b);
+      // r x t is r . n.
+      const S depthA = dot(toA, nA);
+      const S depthB = dot(toB, nB);
+      fill(point.normal, cross(toA, nA), cross(toB, nB),
+           clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>));
+      fill(point.tangent, depthA, depthB, clamp(keptSum(contact.tangentSpeed), -kMaxSum<S>, kMaxSum<S>));
+      point.separation[lane] = apart(depthA, depthB);
+      normalPart += point.normal.sum[lane];
+      tangentPart += point.tangent.sum[lane];
+      rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = S(0);
+      rest.bounce[i][lane] = bounceOf(point.normal.armA[lane], point.normal.armB[lane]);
+    }
+    const S x = cross(n.x, normalPart, n.y, tangentPart);
+    const S y = dot(n.y, normalPart, n.x, tangentPart);
+    const S shareB = S(1) - shareA;
+    if (a.isDynamic()) give(indexA, shareA * x, shareA * y, turnA);
+    if (b.isDynamic()) give(indexB, shareB * -x, shareB * -y, -turnB);
   }
-  for (int i = pair.count; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, lane, i);
-  const S x = cross(n.x, normalPart, n.y, tangentPart);
-  const S y = dot(n.y, normalPart, n.x, tangentPart);
-  if (a.isDynamic()) give(indexA, shareA * x, shareA * y, turnA, misfit);
-  if (b.isDynamic()) give(indexB, shareB * -x, shareB * -y, -turnB, misfit);
   return misfit == 0;
 }
 
@@ -351,7 +528,7 @@ std::uint64_t BlockSolver<S, N>::integrateVelocities(std::uint32_t begin, std::u
         const std::int64_t speed = base + given;
         drive.base[k] = static_cast<Speed>(base);
         body.velocity[k] = static_cast<Speed>(speed);
-        left |= static_cast<std::uint64_t>(speed + N::kRange) >> 31;
+        left |= static_cast<std::uint64_t>(speed + N::kRange) >> 29;
       }
     }
   } else {
@@ -390,13 +567,13 @@ std::uint64_t BlockSolver<S, N>::integratePositions(std::uint32_t begin, std::ui
       for (int k = 0; k < 3; ++k) {
         const std::int64_t way = body.moved[k] + units::shifted(body.velocity[k] * substep, N::kUnitBits);
         body.moved[k] = static_cast<Speed>(way);
-        left |= static_cast<std::uint64_t>(way + N::kRange) >> 31;
+        left |= static_cast<std::uint64_t>(way + N::kRange / 2) >> 28;
       }
       // Half the square of the angle, as a way at the radius.
       const int perRadius = units_.wayBits() + units_.radius((*starts_)[i].radiusBits);
       const std::int64_t bend =
           units::shifted(std::int64_t{body.moved[2]} * body.moved[2], perRadius + 1);
-      body.moved[3] = static_cast<Speed>(min(bend, min(units::shifted(1, 3 - perRadius), N::kRange - 1)));
+      body.moved[3] = static_cast<Speed>(min(bend, min(units::shifted(1, 3 - perRadius), std::int64_t{N::kRange / 2 - 1})));
     }
   } else {
     const S half = ratio<S>(1, 2);
@@ -452,7 +629,7 @@ void BlockSolver<S, N>::bounce() {
     Block& block = blocks_[i];
     if (block.bounces == 0) continue;
     Rest& rest = rests_[i];
-    for (int lane = 0; lane < kBlockLanes; ++lane) {
+    for (int lane = 0; lane < N::kLanes; ++lane) {
       const std::uint32_t indexA = block.bodyA[lane], indexB = block.bodyB[lane];
       const int radiusA = (*starts_)[indexA].radiusBits, radiusB = (*starts_)[indexB].radiusBits;
       const Vector<S> n(units_.fromUnit(block.normalX[lane]), units_.fromUnit(block.normalY[lane]));
@@ -473,11 +650,11 @@ void BlockSolver<S, N>::bounce() {
         const S before = units_.fromSum(axis.sum[lane]);
         const S after = clamp(before + units_.fromUnit(axis.mass[lane]) * (wanted - speed), S(0), kMaxSum<S>);
         const S change = after - before;
-        axis.sum[lane] = units_.sum(after);
-        rest.normalTotal[k][lane] = units_.sum(units_.fromSum(rest.normalTotal[k][lane]) + change);
+        std::int64_t misfit = 0;
+        axis.sum[lane] = units_.sum(after, misfit);
+        rest.normalTotal[k][lane] = units_.sum(units_.fromSum(rest.normalTotal[k][lane]) + change, misfit);
         const auto push = [&](std::uint32_t index, S share, S along, S turn, int radiusBits) {
           SoftBody<N>& body = bodies_[index];
-          std::int64_t misfit = 0;
           body.velocity[0] = units_.speed(speedOf(index, 0) + share * (n.x * along), misfit);
           body.velocity[1] = units_.speed(speedOf(index, 1) + share * (n.y * along), misfit);
           body.velocity[2] =
@@ -511,20 +688,27 @@ template <Scalar S, class N>
 void BlockSolver<S, N>::storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const {
   const Block& block = blocks_[at];
   const Rest& rest = rests_[at];
-  for (int lane = 0; lane < kBlockLanes; ++lane) {
+  for (int lane = 0; lane < N::kLanes; ++lane) {
     if (rest.pair[lane] == Rest::kNoPair) continue;
     // The lighter body has the larger share.
-    const S shareA = units_.fromUnit(block.shareA[lane]);
-    const S lighter = max(shareA, S(1) - shareA);
+    const auto shareA = block.shareA[lane];
     Pair<S>& pair = pairs[rest.pair[lane]];
+    const auto speedOf = [&](S sum) {
+      if constexpr (kIntegers) {
+        const std::int32_t lighter = max(shareA, (1 << N::kUnitBits) - shareA);
+        return S::fromRaw(units::scaled<N::kUnitBits>(lighter, sum.raw()));
+      } else {
+        return sum * max(shareA, S(1) - shareA);
+      }
+    };
     for (int k = 0; k < block.count[lane]; ++k) {
       Contact<S>& contact = pair.contacts[k];
       const S normalTotal = units_.fromSum(rest.normalTotal[k][lane]);
       const S tangentTotal = units_.fromSum(rest.tangentTotal[k][lane]);
-      contact.normalSpeed = units_.fromSum(block.point[k].normal.sum[lane]) * lighter;
-      contact.tangentSpeed = units_.fromSum(block.point[k].tangent.sum[lane]) * lighter;
-      contact.normalTotal = min(normalTotal, kMaxSum<S>) * lighter;
-      contact.tangentTotal = clamp(tangentTotal, -kMaxSum<S>, kMaxSum<S>) * lighter;
+      contact.normalSpeed = speedOf(units_.fromSum(block.point[k].normal.sum[lane]));
+      contact.tangentSpeed = speedOf(units_.fromSum(block.point[k].tangent.sum[lane]));
+      contact.normalTotal = speedOf(min(normalTotal, kMaxSum<S>));
+      contact.tangentTotal = speedOf(clamp(tangentTotal, -kMaxSum<S>, kMaxSum<S>));
       highWater<S>("soft step: impulse total", normalTotal);
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <vector>
 
@@ -27,8 +28,9 @@ class BlockSolver {
   /// Takes bodies, whose first stands for all that never move, and makes room for the groups, whose blocks are
   /// then to be filled.
   /// @return false where the numbers of the step do not fit
+  /// @param mostKept  no kept impulse is larger, as a speed of the lighter body, m/s
   bool begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
-             const std::vector<BlockGroup>& groups);
+             const std::vector<BlockGroup>& groups, S mostKept);
   /// Readies a block, whose lanes hold anything.
   void openBlock(std::uint32_t at);
   /// Puts a pair into a lane of a block and gives its kept impulses to the bodies.
@@ -53,8 +55,14 @@ class BlockSolver {
   using Block = ContactBlock<N>;
   using Rest = BlockRest<N>;
   using Speed = typename N::Speed;
+  static constexpr bool kIntegers = std::derived_from<N, IntegerUnits>;
 
-  void give(std::uint32_t body, S x, S y, S turn, std::int64_t& misfit);
+  struct Frames;
+  bool fillPoints(Block& block, Rest& rest, int lane, const Pair<S>& pair, const Frames& of);
+  void give(std::uint32_t body, S x, S y, S turn);
+  void give(std::uint32_t body, std::int64_t x, std::int64_t y, std::int64_t turn, std::int64_t& misfit)
+  requires kIntegers;
+  void setFriction(Block& block, int lane, S friction);
   std::uint64_t integrateVelocities(std::uint32_t begin, std::uint32_t end);
   std::uint64_t integratePositions(std::uint32_t begin, std::uint32_t end);
   void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
@@ -68,6 +76,8 @@ class BlockSolver {
   std::vector<SoftBody<N>> bodies_;
   std::vector<SoftDrive<N>> drives_;
   std::vector<std::uint8_t> held_;
+  /// Of integers: inverse moment times mass by the squared radius, in units of spins.
+  std::vector<std::int64_t> moments_;
   /// The first blockCount_ are in use; the rest keep their memory.
   std::vector<Block> blocks_;
   std::vector<Rest> rests_;

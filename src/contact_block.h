@@ -7,12 +7,11 @@
 /// share no inline function with the rest of the library.
 namespace samestep {
 
-/// Pairs side by side in a block: as many as the widest kernel takes at once.
-inline constexpr int kBlockLanes = 4;
-
 /// What the numbers of a block are: a scalar as it is.
 template <class S, bool kSpins>
 struct PlainNumbers {
+  /// Pairs side by side in a block: as many as the widest kernel takes at once.
+  static constexpr int kLanes = 4;
   using Coefficient = S;  ///< Directions, arms, masses.
   using Speed = S;        ///< Of a body.
   using Sum = S;          ///< Impulses and what is found from speeds.
@@ -20,28 +19,33 @@ struct PlainNumbers {
   static constexpr bool kStoresSpins = kSpins;
 };
 
-/// Coefficients as integers of 32 bits in units of powers of two, impulses in 64. A body's turning is kept as
-/// the way of a point at its radius, a power of two no less than the arms of its contacts.
+/// Coefficients as integers of 32 bits in units of powers of two. A body's turning is kept as the way of a
+/// point at its radius, a power of two no less than the arms of its contacts.
 struct IntegerUnits {
   using Coefficient = std::int32_t;
-  using Sum = std::int64_t;
   static constexpr bool kStoresSpins = true;
-  /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of spins; of friction;
-  /// of rates, speeds by ways.
-  static constexpr int kUnitBits = 30, kSpinBits = 26, kFrictionBits = 22, kRateBits = 22;
+  /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of rates, speeds by ways.
+  static constexpr int kUnitBits = 30, kRateBits = 22;
 };
 
 /// Speeds, ways and impulses in 64 bits: the accuracy and the range of Q32.32.
 struct WideNumbers : IntegerUnits {
+  static constexpr int kLanes = 4;
   using Speed = std::int64_t;
+  using Sum = std::int64_t;
+  static constexpr int kSpinBits = 26, kFrictionBits = 22;
 };
 
-/// Speeds and ways in 32 bits. Speeds and impulses have one unit for the whole step, chosen by the fastest
-/// body, and ways another.
+/// All in 32 bits. Speeds and impulses have one unit for the whole step, chosen by the largest of them, and
+/// ways another.
 struct FastNumbers : IntegerUnits {
+  static constexpr int kLanes = 8;
   using Speed = std::int32_t;
-  /// What speeds, ways and changes of impulses must stay below in size: then no product leaves 64 bits.
-  static constexpr std::int64_t kRange = std::int64_t{1} << 30;
+  using Sum = std::int32_t;
+  static constexpr int kSpinBits = 28, kFrictionBits = 28;
+  /// What speeds and impulses must stay below in size, half of it what ways and changes of impulses must:
+  /// then no sum leaves 32 bits.
+  static constexpr std::int32_t kRange = 1 << 28;
 };
 
 /// One body in the substeps.
@@ -68,29 +72,29 @@ struct alignas(4 * sizeof(typename N::Speed)) SoftDrive {
 template <class N, bool = N::kStoresSpins>
 struct BlockAxis {
   /// r x axis of both bodies, m.
-  typename N::Coefficient armA[kBlockLanes], armB[kBlockLanes];
+  typename N::Coefficient armA[N::kLanes], armB[N::kLanes];
   /// The u that changes the speed at the point by 1, in [0, 1].
-  typename N::Coefficient mass[kBlockLanes];
+  typename N::Coefficient mass[N::kLanes];
   /// Accumulated u, m/s.
-  typename N::Sum sum[kBlockLanes];
+  typename N::Sum sum[N::kLanes];
 };
 template <class N>
 struct BlockAxis<N, true> : BlockAxis<N, false> {
   /// The spin that a u of 1 gives each body, 1/m.
-  typename N::Coefficient spinA[kBlockLanes], spinB[kBlockLanes];
+  typename N::Coefficient spinA[N::kLanes], spinB[N::kLanes];
 };
 
 template <class N>
 struct BlockPoint {
   BlockAxis<N> normal, tangent;
   /// Between the surfaces along the normal when the step began, m.
-  alignas(kBlockLanes * sizeof(typename N::Speed)) typename N::Speed separation[kBlockLanes];
+  alignas(32) typename N::Speed separation[N::kLanes];
 };
 
 /// How an impulse turns the bodies, 1/m^2: spin = moment * arm * u.
 template <class N, bool = N::kStoresSpins>
 struct BlockMoments {
-  typename N::Coefficient momentA[kBlockLanes], momentB[kBlockLanes];
+  typename N::Coefficient momentA[N::kLanes], momentB[N::kLanes];
 };
 template <class N>
 struct BlockMoments<N, true> {};
@@ -98,23 +102,25 @@ struct BlockMoments<N, true> {};
 /// Up to four pairs that share no body but such as nothing moves.
 template <class N>
 struct alignas(64) ContactBlock {
-  std::uint32_t bodyA[kBlockLanes], bodyB[kBlockLanes];
+  std::uint32_t bodyA[N::kLanes], bodyB[N::kLanes];
   /// Points of each lane, and the most of them.
-  std::uint8_t count[kBlockLanes], points;
+  std::uint8_t count[N::kLanes], points;
   /// A bit per lane: whether contacts leave A or B as it is; whether its surface is round, so that turning
   /// does not move it; whether the contact is one with a body that nothing moves.
   std::uint8_t fixedA, fixedB, roundA, roundB, stiff;
   /// Whether any point bounces.
   std::uint8_t bounces;
-  alignas(32) typename N::Coefficient normalX[kBlockLanes];
-  typename N::Coefficient normalY[kBlockLanes];
+  /// Of 32 bits: the friction is 2^this times what is written, where that does not hold it.
+  std::uint8_t frictionShift;
+  alignas(32) typename N::Coefficient normalX[N::kLanes];
+  typename N::Coefficient normalY[N::kLanes];
   /// The part of u that changes the speed of A; the rest that of B.
-  typename N::Coefficient shareA[kBlockLanes];
+  typename N::Coefficient shareA[N::kLanes];
   // Takes no room where spins are kept: what follows stays aligned.
   [[no_unique_address]] BlockMoments<N> moments;
-  typename N::Coefficient friction[kBlockLanes];
+  typename N::Coefficient friction[N::kLanes];
   /// The surface's own speed along the tangent, m/s.
-  typename N::Speed surface[kBlockLanes];
+  typename N::Speed surface[N::kLanes];
   BlockPoint<N> point[2];
 };
 
@@ -122,11 +128,11 @@ struct alignas(64) ContactBlock {
 template <class N>
 struct alignas(32) BlockRest {
   /// The sums added up over the substeps.
-  typename N::Sum normalTotal[2][kBlockLanes], tangentTotal[2][kBlockLanes];
+  typename N::Sum normalTotal[2][N::kLanes], tangentTotal[2][N::kLanes];
   /// What a bounce shall leave, m/s; 0 for none.
-  typename N::Sum bounce[2][kBlockLanes];
+  typename N::Sum bounce[2][N::kLanes];
   /// Which pair of the Space each lane is; kNoPair for an empty one.
-  std::uint32_t pair[kBlockLanes];
+  std::uint32_t pair[N::kLanes];
   static constexpr std::uint32_t kNoPair = 0xffffffffu;
 };
 
@@ -149,8 +155,8 @@ struct SoftConstants {
   typename N::Speed pushSpeed;
   /// The greatest accumulated u, m/s.
   typename N::Sum mostSum;
-  /// The greatest gap that a kernel of limited range tells apart, m.
-  typename N::Speed mostGap;
+  /// The greatest gap and the greatest overlap that a kernel of limited range tells apart, m.
+  typename N::Speed mostGap, mostOverlap;
 };
 
 /// Passes over `count` blocks, in order.

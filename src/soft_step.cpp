@@ -19,6 +19,7 @@ Softness<S> makeSoftness(S hertz, S dampingRatio, S substep) {
 template <Scalar S>
 void SoftStep<S>::clear() {
   starts.assign(1, {});
+  starts[0].radiusBits = kAnyRadiusBits;
   free.clear();
   groups.clear();
 }

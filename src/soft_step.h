@@ -76,6 +76,8 @@ struct SoftStep {
   std::vector<SoftMotion<S>> free;
   /// Of the blocks, in their order.
   std::vector<BlockGroup> groups;
+  /// No kept impulse is larger, as a speed of the lighter body, m/s; asked for where 32 bits are to do.
+  S mostKept{};
   SoftSolvers<S> solvers;
 
   /// Forgets the last step.

@@ -12,6 +12,9 @@
 
 namespace samestep {
 
+/// The radius, in powers of two metres, of what may be of any size since it does not move.
+inline constexpr int kAnyRadiusBits = 24;
+
 /// What the soft step is told of a body that touches something.
 template <Scalar S>
 struct SoftStart {
@@ -48,13 +51,27 @@ struct SoftSettings {
 namespace units {
 
 /// x / 2^bits to nearest, ties away from zero; x * 2^-bits for negative bits, saturated at 2^62.
-inline std::int64_t shifted(std::int64_t x, int bits) {
-  if (bits <= 0) {
-    const std::int64_t limit = std::int64_t{1} << (62 + bits);
-    return clamp(x, -limit, limit) << -bits;
+[[gnu::always_inline]] inline std::int64_t shifted(std::int64_t x, int bits) {
+  if (bits > 0) [[likely]] {
+    return bits > 62 ? 0 : (x + (std::int64_t{1} << (bits - 1)) - (x < 0)) >> bits;
   }
-  if (bits > 62) return 0;
-  return (x + (std::int64_t{1} << (bits - 1)) - (x < 0)) >> bits;
+  const std::int64_t limit = std::int64_t{1} << (62 + bits);
+  return clamp(x, -limit, limit) << -bits;
+}
+
+/// The same for bits that are known and not less than 1.
+template <int kBits>
+[[gnu::always_inline]] inline std::int64_t rounded(std::int64_t x) {
+  return (x + (std::int64_t{1} << (kBits - 1)) - (x < 0)) >> kBits;
+}
+
+/// factor * x / 2^bits, the product whole, to nearest, ties away from zero; bits up to 32.
+/// @pre the result fits
+template <int kBits>
+[[gnu::always_inline]] inline std::int64_t scaled(std::int32_t factor, std::int64_t x) {
+  const std::int64_t high = (x + (std::int64_t{1} << 31)) >> 32;
+  const std::int64_t low = static_cast<std::int32_t>(x);
+  return factor * high * (std::int64_t{1} << (32 - kBits)) + rounded<kBits>(factor * low);
 }
 
 /// How many bits the whole part of a Q32.32 has, less than 0 for small ones.
@@ -71,20 +88,16 @@ class SoftUnits;
 template <Scalar S, bool kSpins>
 class SoftUnits<S, PlainNumbers<S, kSpins>> {
  public:
-  bool choose(const SoftSettings<S>&, const std::vector<SoftStart<S>>&) { return true; }
+  bool choose(const SoftSettings<S>&, const std::vector<SoftStart<S>>&, S) { return true; }
   SoftConstants<PlainNumbers<S, kSpins>> constants(const SoftSettings<S>& of, S mostSum) const {
-    return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, S(0)};
+    return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, S(0), S(0)};
   }
 
   static S unit(S x) { return x; }
-  static S arm(S x, int) { return x; }
-  static S spin(S x, int, std::int64_t&) { return x; }
-  static S friction(S x) { return x; }
-  static S inverse(S k) { return reciprocal(k); }
   static S speed(S x, std::int64_t&) { return x; }
   static S turn(S x, int, std::int64_t&) { return x; }
   static S way(S x) { return x; }
-  static S sum(S x) { return x; }
+  static S sum(S x, std::int64_t&) { return x; }
 
   static S fromUnit(S x) { return x; }
   static S fromArm(S x, int) { return x; }
@@ -99,11 +112,14 @@ class SoftUnits<S, PlainNumbers<S, kSpins>> {
 template <Scalar S, std::derived_from<IntegerUnits> N>
 class SoftUnits<S, N> {
  public:
-  static constexpr bool kWide = sizeof(typename N::Speed) == 8;
+  static constexpr bool kWide = std::same_as<N, WideNumbers>;
   using Speed = typename N::Speed;
+  using Sum = typename N::Sum;
 
-  /// Chooses the units of a step. @return false if there are none
-  bool choose(const SoftSettings<S>& of, const std::vector<SoftStart<S>>& starts) {
+  /// Chooses the units of a step.
+  /// @param mostKept  no kept impulse is larger, as a speed of the lighter body, m/s
+  /// @return false if there are none
+  bool choose(const SoftSettings<S>& of, const std::vector<SoftStart<S>>& starts, S mostKept) {
     using units::wholeBits;
     speedBits_ = 32;
     if constexpr (!kWide) {
@@ -116,9 +132,13 @@ class SoftUnits<S, N> {
         fastest =
             max(fastest, max(wholeBits(most(0) | most(1)), wholeBits(most(2)) + radius(start.radiusBits)));
       }
-      // Every magnitude is below twice the power of two that its bits say.
-      speedBits_ = min(kSpeedBits - kSpareBits - fastest, kMostSpeedBits);
-      if (speedBits_ < 1) return false;
+      // Every magnitude is below twice the power of two that its bits say. An impulse is up to twice the speed
+      // that it gives the lighter body, and totals of more than four substeps want room.
+      const int total = max(static_cast<int>(std::bit_width(static_cast<unsigned>(of.substeps))) - 3, 0);
+      speedBits_ = min(min(kSpeedBits - kSpareBits - fastest,
+                           kSpeedBits - 2 - total - wholeBits(raw::magnitude(mostKept.raw()))),
+                       kMostSpeedBits);
+      if (speedBits_ < kLeastSpeedBits) return false;
     }
     const std::int64_t step = of.substep.raw() * of.substeps;
     finer_ = clamp(-wholeBits(static_cast<std::uint64_t>(step)), 0, kMostFiner);
@@ -133,41 +153,37 @@ class SoftUnits<S, N> {
       to.softness[i] = {narrow(rate(soft.biasRate)), unit(soft.massScale), unit(soft.impulseScale)};
     }
     to.perSubstep = narrow(rate(of.perSubstep));
-    to.pushSpeed = static_cast<Speed>(min(units::shifted(of.pushSpeed.raw(), 32 - speedBits_), kMost / 2));
-    to.mostSum = sum(mostSum);
-    // What is farther apart is not reached within a substep at any speed in range.
-    to.mostGap = static_cast<Speed>(min(
-        kWide ? kMost : (kMost / 2 << N::kRateBits) / max(std::int64_t{to.perSubstep}, std::int64_t{1}), kMost));
+    std::int64_t held = 0;
+    to.pushSpeed = speed(of.pushSpeed, held);
+    to.mostSum = sum(mostSum, held);
+    if constexpr (!kWide) {
+      // What is farther apart is not reached within a substep at any speed in range; what overlaps more is
+      // pushed apart as if it did not.
+      const std::int64_t perSubstep = max(std::int64_t{to.perSubstep}, std::int64_t{1});
+      to.mostGap = narrow(min((std::int64_t{N::kRange} << N::kRateBits) / perSubstep, kMost));
+      to.mostOverlap = narrow(min((7 * std::int64_t{N::kRange} << N::kRateBits) / perSubstep,
+                                  std::int64_t{1} << 30));
+    }
     return to;
   }
 
   /// Of what is in [-1, 1].
-  static std::int32_t unit(S x) { return narrow(units::shifted(x.raw(), 32 - N::kUnitBits)); }
-  static std::int32_t arm(S x, int radiusBits) {
+  [[gnu::always_inline]] static std::int32_t unit(S x) {
+    return narrow(units::rounded<32 - N::kUnitBits>(x.raw()));
+  }
+  /// A way in a body's coordinates, by its radius.
+  [[gnu::always_inline]] static std::int32_t arm(S x, int radiusBits) {
     constexpr std::int64_t kOne = std::int64_t{1} << N::kUnitBits;
     return narrow(clamp(units::shifted(x.raw(), 32 - N::kUnitBits + radius(radiusBits)), -kOne, kOne));
   }
-  static std::int32_t spin(S x, int radiusBits, std::int64_t& misfit) {
-    return held(units::shifted(x.raw(), 32 - N::kSpinBits - radius(radiusBits)), misfit);
-  }
-  /// Held at 511: hardly anything slips at a tenth of it.
-  static std::int32_t friction(S x) {
-    return narrow(units::shifted(min(x, S(511)).raw(), 32 - N::kFrictionBits));
-  }
-  /// 1 / k for a k of 1 or more.
-  static std::int32_t inverse(S k) {
-    const auto divisor = static_cast<std::uint64_t>(k.raw());
-    return static_cast<std::int32_t>(((std::uint64_t{1} << (32 + N::kUnitBits)) + divisor / 2) / divisor);
-  }
-  Speed speed(S x, std::int64_t& misfit) const { return speedOf(x, 0, misfit); }
-  Speed turn(S x, int radiusBits, std::int64_t& misfit) const {
+  [[gnu::always_inline]] Speed speed(S x, std::int64_t& misfit) const { return speedOf(x, 0, misfit); }
+  [[gnu::always_inline]] Speed turn(S x, int radiusBits, std::int64_t& misfit) const {
     return speedOf(x, radius(radiusBits), misfit);
   }
-  Speed way(S x) const {
+  [[gnu::always_inline]] Speed way(S x) const {
     return static_cast<Speed>(clamp(units::shifted(x.raw(), 32 - wayBits_), -kMost, kMost));
   }
-  std::int64_t sum(S x) const { return units::shifted(x.raw(), 32 - speedBits_); }
-  std::int32_t rateOf(S x) const { return narrow(rate(x)); }
+  [[gnu::always_inline]] Sum sum(S x, std::int64_t& misfit) const { return static_cast<Sum>(speedOf(x, 0, misfit)); }
 
   static S fromUnit(std::int32_t x) {
     return S::fromRaw(std::int64_t{x} * (std::int64_t{1} << (32 - N::kUnitBits)));
@@ -178,7 +194,7 @@ class SoftUnits<S, N> {
   static S fromSpin(std::int32_t x, int radiusBits) {
     return S::fromRaw(units::shifted(x, N::kSpinBits - 32 + radius(radiusBits)));
   }
-  S fromSpeed(Speed x) const { return S::fromRaw(units::shifted(x, speedBits_ - 32)); }
+  [[gnu::always_inline]] S fromSpeed(Speed x) const { return S::fromRaw(units::shifted(x, speedBits_ - 32)); }
   S fromTurn(Speed x, int radiusBits) const {
     return S::fromRaw(units::shifted(x, speedBits_ + radius(radiusBits) - 32));
   }
@@ -186,33 +202,33 @@ class SoftUnits<S, N> {
   S fromWay(Speed x, int radiusBits) const {
     return S::fromRaw(units::shifted(x, wayBits_ + radius(radiusBits) - 32));
   }
-  S fromSum(std::int64_t x) const { return S::fromRaw(units::shifted(x, speedBits_ - 32)); }
+  [[gnu::always_inline]] S fromSum(Sum x) const { return S::fromRaw(units::shifted(x, speedBits_ - 32)); }
 
   int speedBits() const { return speedBits_; }
   int wayBits() const { return wayBits_; }
   /// How many bits finer than speeds ways are.
   int finer() const { return finer_; }
   /// In 64 bits no turning loses anything.
-  static int radius(int bits) { return clamp(bits, kWide ? 0 : -16, 24); }
+  static int radius(int bits) { return clamp(bits, kWide ? 0 : -16, kAnyRadiusBits); }
 
  private:
-  /// What speeds and ways are held below.
-  static constexpr int kSpeedBits = kWide ? 61 : 30;
+  /// What speeds, impulses and ways are held below.
+  static constexpr int kSpeedBits = kWide ? 61 : 28;
   static constexpr std::int64_t kMost = (std::int64_t{1} << kSpeedBits) - 1;
   /// Room that speeds have for growing within the step: contacts push, and a difference is twice as large.
   static constexpr int kSpareBits = 4;
-  /// Speeds of less than 1 m/s get no finer.
-  static constexpr int kMostSpeedBits = 26;
+  /// Speeds of less than 1 m/s get no finer; none are coarser than a millimetre in four seconds.
+  static constexpr int kMostSpeedBits = 24, kLeastSpeedBits = 12;
   /// A step of less than 2^-14 s has no finer ways.
   static constexpr int kMostFiner = 14;
 
   static std::int32_t narrow(std::int64_t x) { return static_cast<std::int32_t>(x); }
   static bool fits(std::int64_t x) { return x == std::int64_t{narrow(x)}; }
-  static std::int32_t held(std::int64_t x, std::int64_t& misfit) {
-    misfit |= x ^ narrow(x);
-    return narrow(x);
-  }
-  Speed speedOf(S x, int finer, std::int64_t& misfit) const {
+  [[gnu::always_inline]] Speed speedOf(S x, int finer, std::int64_t& misfit) const {
+    if constexpr (kWide) {
+      // Speeds by radius are below 2^18 m/s, impulses below 2^21.
+      return x.raw() * (std::int64_t{1} << finer);
+    }
     const std::int64_t wide = units::shifted(x.raw(), 32 - speedBits_ - finer);
     const std::int64_t in = clamp(wide, -kMost, kMost);
     misfit |= wide ^ in;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -28,18 +27,6 @@ struct PlacedPose {
   friend bool operator==(const PlacedPose&, const PlacedPose&) = default;
 };
 
-/// Powers of two metres that shapes are measured in: none is taken to be smaller than the least.
-inline constexpr int kLeastExtentBits = -16;
-template <Scalar S>
-std::int8_t extentBits(S extent) {
-  if constexpr (FixedNumber<S>) {
-    return static_cast<std::int8_t>(
-        max(static_cast<int>(std::bit_width(raw::magnitude(extent.raw()))) - 32, kLeastExtentBits));
-  } else {
-    return 0;
-  }
-}
-
 /// What pairs ask about a shape, close together.
 template <Scalar S>
 struct ShapeTraits {
@@ -47,7 +34,7 @@ struct ShapeTraits {
   std::uint32_t body = 0;
   ShapeFilter filter{};
   std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
-  std::int8_t extentBits = kLeastExtentBits;  ///< None of the shape is farther from the origin than 2^this m.
+  S extent{};             ///< The same, exactly.
   bool sensor = false;
   bool round = false;    ///< A circle.
   bool rounded = false;  ///< Has a radius: its surface may roll.
@@ -55,7 +42,7 @@ struct ShapeTraits {
   static ShapeTraits of(const Shape<S>& shape) {
     return {Surface<S>::of(shape), shape.body().index,
             shape.filter(),        static_cast<std::int32_t>(shape.extent()) + 1,
-            samestep::extentBits(shape.extent()),
+            shape.extent(),
             shape.sensor(),        shape.type() == ShapeType::circle,
             shape.radius() != S(0)};
   }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stages of the step that belong to the soft-step solver.
+#include <bit>
+
 #include "require_ieee.h"
 #include "space_impl.h"
 
@@ -10,13 +12,17 @@ namespace {
 /// The power of two metres that nothing of a body is beyond, seen from its centre of mass.
 template <Scalar S, class Impl>
 int radiusBits(const Impl& impl, std::uint32_t index, const Body<S>& body) {
-  int bits = kLeastExtentBits;
+  S extent = S(0);
   for (std::uint32_t i = impl.firstShape[index]; i != Impl::kNone; i = impl.nextShape[i]) {
-    bits = max(bits, int{impl.traits[i].extentBits});
+    extent = max(extent, impl.traits[i].extent);
   }
   const Vector<S> center = body.centerOfMass();
-  return center == Vector<S>{} ? bits : max(bits, extentBits(max(abs(center.x), abs(center.y))) + 1) + 1;
+  const S most = extent + (abs(center.x) + abs(center.y));
+  return most == S(0) ? 0 : static_cast<int>(std::bit_width(raw::magnitude(most.raw()) - 1)) - 32;
 }
+
+/// How many pairs ahead bodies are fetched; pairs twice as many.
+constexpr std::uint32_t kAhead = 6;
 
 /// Puts the pairs into blocks, group by group.
 /// @return false where a number does not fit
@@ -24,9 +30,25 @@ template <Scalar S, class Solver, class Impl>
 bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs,
                const SlotMap<Body<S>, BodyId>& bodies, S bounceThreshold) {
   Finding misfit, bounces;
+  const auto pairAt = [&](std::uint32_t i) -> const Pair<S>& { return pairs[impl.solvedPairs[impl.groupOrder[i]]]; };
+  const auto last = static_cast<std::uint32_t>(impl.groupOrder.size());
+  // The lot between groups scatters what is asked for.
+  const auto fetchAhead = [&](std::uint32_t i) {
+    if (i + 2 * kAhead >= last) return;
+    const Pair<S>& far = pairAt(i + 2 * kAhead);
+    for (std::uint32_t line = 0; line < sizeof(far); line += 64) {
+      __builtin_prefetch(reinterpret_cast<const char*>(&far) + line);
+    }
+    const Pair<S>& near = pairAt(i + kAhead);
+    for (const ShapeId& shape : {near.a, near.b}) {
+      const auto* body = reinterpret_cast<const char*>(&bodies.valueAt(impl.traits[shape.index].body));
+      for (std::uint32_t line = 0; line < sizeof(Body<S>); line += 64) __builtin_prefetch(body + line);
+    }
+  };
   const auto takeBlock = [&](std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
     solver.openBlock(block);
     for (std::uint32_t i = begin; i < end; ++i) {
+      fetchAhead(i);
       const std::uint32_t index = impl.solvedPairs[impl.groupOrder[i]];
       const Pair<S>& pair = pairs[index];
       const ShapeTraits<S>& shapeA = impl.traits[pair.a.index];
@@ -46,7 +68,7 @@ bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs,
     for (const BlockGroup& blockGroup : impl.soft.groups) {
       while (impl.groups.size(group) == 0) ++group;
       const std::uint32_t count = impl.groups.size(group++);
-      const std::uint32_t lanes = blockGroup.inOrder ? 1 : kBlockLanes;
+      const std::uint32_t lanes = blockGroup.inOrder ? 1 : Solver::Numbers::kLanes;
       const std::uint32_t start = blockGroup.begin;
       const auto take = [&](std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t i = begin; i < end; ++i) {
@@ -95,6 +117,8 @@ void Space<S>::softFindGroups() {
   impl.groups.clear(state_.bodies.slots());
   impl.solvedPairs.clear();
   impl.solverIndex.assign(state_.bodies.slots(), Impl::kNone);
+  impl.soft.mostKept = S(0);
+  const bool fast = FixedNumber<S> && state_.settings.precision == ContactPrecision::fast;
   for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
     const Pair<S>& pair = state_.pairs[i];
     if (pair.solved == 0) continue;
@@ -102,6 +126,9 @@ void Space<S>::softFindGroups() {
     const std::uint32_t b = impl.traits[pair.b.index].body;
     impl.solverIndex[a] = impl.solverIndex[b] = 0;
     impl.solvedPairs.push_back(i);
+    for (int k = 0; fast && k < pair.count; ++k) {
+      impl.soft.mostKept = max(impl.soft.mostKept, max(pair.contacts[k].normalSpeed, abs(pair.contacts[k].tangentSpeed)));
+    }
     impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic(),
                     pair.count == 1);
   }
@@ -155,18 +182,19 @@ template <Scalar S>
 void Space<S>::softTakePairs() {
   Impl& impl = *impl_;
   SoftStep<S>& soft = impl.soft;
-  std::uint32_t blocks = 0;
-  soft.groups.clear();
-  for (std::uint32_t group = 0; group < ContactGroups::kGroups; ++group) {
-    // The pairs of the last group may share bodies.
-    const bool inOrder = group == ContactGroups::kGroups - 1;
-    const std::uint32_t pairs = impl.groups.size(group);
-    const std::uint32_t end = blocks + (inOrder ? pairs : (pairs + kBlockLanes - 1) / kBlockLanes);
-    if (pairs > 0) soft.groups.push_back({blocks, end, inOrder});
-    blocks = end;
-  }
   const auto take = [&](auto& solver) {
-    return solver.begin(soft.settings, soft.starts, soft.groups) &&
+    constexpr std::uint32_t kLanes = std::remove_reference_t<decltype(solver)>::Numbers::kLanes;
+    std::uint32_t blocks = 0;
+    soft.groups.clear();
+    for (std::uint32_t group = 0; group < ContactGroups::kGroups; ++group) {
+      // The pairs of the last group may share bodies.
+      const bool inOrder = group == ContactGroups::kGroups - 1;
+      const std::uint32_t pairs = impl.groups.size(group);
+      const std::uint32_t end = blocks + (inOrder ? pairs : (pairs + kLanes - 1) / kLanes);
+      if (pairs > 0) soft.groups.push_back({blocks, end, inOrder});
+      blocks = end;
+    }
+    return solver.begin(soft.settings, soft.starts, soft.groups, soft.mostKept) &&
            takePairs(solver, impl, state_.pairs, state_.bodies, state_.settings.bounceThreshold);
   };
   while (!soft.solvers.with(take)) soft.solvers.fallBack();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,16 +109,19 @@ struct IntegerSource {
   std::int32_t friction() { return number(N::kFrictionBits) & ((1 << N::kFrictionBits) - 1); }
   Speed speed() { return static_cast<Speed>(wide(bits)); }
   Speed way() { return static_cast<Speed>(wide(bits)); }
-  std::int64_t sum() { return wide(bits); }
-  std::int64_t positive() { return wide(bits) & ((std::int64_t{1} << bits) - 1); }
+  typename N::Sum sum() { return static_cast<typename N::Sum>(wide(bits)); }
+  typename N::Sum positive() {
+    return static_cast<typename N::Sum>(wide(bits) & ((std::int64_t{1} << bits) - 1));
+  }
   void constants(SoftConstants<N>& to) {
     const std::int32_t one = 1 << N::kUnitBits;
     to.softness[0] = {20 << 16, one / 4 * 3, one / 4};
     to.softness[1] = {30 << 16, one / 2, one / 2};
     to.perSubstep = 240 << 16;
     to.pushSpeed = 3 << 18;
-    to.mostSum = std::int64_t{1} << 50;
-    to.mostGap = (1 << 29) / 8;
+    to.mostSum = std::numeric_limits<typename N::Sum>::max() / 2;
+    to.mostGap = (1 << 28) / 4;
+    to.mostOverlap = 1 << 28;
   }
 };
 using FastSource = IntegerSource<FastNumbers>;
@@ -140,9 +144,9 @@ Work<N> randomWork(Source& from) {
     block = {};
     work.rests[i] = {};
     // Lanes share no body but the first, which nothing moves.
-    const int used = random.between(1, kBlockLanes);
+    const int used = random.between(1, N::kLanes);
     std::uint32_t next = 1 + random.below(20);
-    for (int lane = 0; lane < kBlockLanes; ++lane) {
+    for (int lane = 0; lane < N::kLanes; ++lane) {
       const auto bit = static_cast<std::uint8_t>(1 << lane);
       const auto mark = [&](std::uint8_t& bits, bool set) {
         if (set) bits = static_cast<std::uint8_t>(bits | bit);

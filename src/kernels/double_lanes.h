@@ -14,6 +14,7 @@ struct DoubleLanes {
   using Numbers = PlainNumbers<double, false>;
   using Body = SoftBody<Numbers>;
   using V = typename Vectors::Numbers;
+  using C = V;
   using M = typename Vectors::Masks;
   static constexpr int kWidth = sizeof(V) / sizeof(double);
 
@@ -23,6 +24,7 @@ struct DoubleLanes {
   [[gnu::always_inline]] static V whole() { return all(1.0); }
   [[gnu::always_inline]] static V all(double x) { return x - V{}; }
   [[gnu::always_inline]] static V load(const double* from) { return *reinterpret_cast<const V*>(from); }
+  [[gnu::always_inline]] static C coefficient(const double* from) { return load(from); }
   [[gnu::always_inline]] static void store(double* to, V v) { *reinterpret_cast<V*>(to) = v; }
   [[gnu::always_inline]] static V select(M mask, V a, V b) { return mask ? a : b; }
   [[gnu::always_inline]] static auto above(V a, V b) { return a > b; }
@@ -32,12 +34,17 @@ struct DoubleLanes {
   }
   [[gnu::always_inline]] static V dot2(V a, V b, V c, V d) { return a * b + c * d; }
   [[gnu::always_inline]] static V cross2(V a, V b, V c, V d) { return a * b - c * d; }
-  [[gnu::always_inline]] static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
-    return (a0 * b0 + a1 * b1) + (a2 * b2 + a3 * b3);
+  [[gnu::always_inline]] static V crosses(V a, V b, V c, V d, V e, V f, V g, V h) {
+    return (a * b - c * d) + (e * f - g * h);
   }
   [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
   [[gnu::always_inline]] static V product(V a, V b) { return a * b; }
-  [[gnu::always_inline]] static V frictionLimit(V friction, V sum) { return friction * sum; }
+  [[gnu::always_inline]] static V frictionLimit(const ContactBlock<Numbers>&, V friction, V sum) {
+    return friction * sum;
+  }
+  [[gnu::always_inline]] static V pushing(V sum, const SoftConstants<Numbers>& constants) {
+    return within(sum, zero(), all(constants.mostSum));
+  }
   [[gnu::always_inline]] static V rate(V way, double rate) { return way * all(rate); }
   [[gnu::always_inline]] static V rate(V way, V rate) { return way * rate; }
   template <class Axis>
@@ -53,6 +60,8 @@ struct DoubleLanes {
   static void note(const char*, V) {}
   /// A double leaves no range.
   [[gnu::always_inline]] static V checked(V v) { return v; }
+  [[gnu::always_inline]] static V checkedChange(V v) { return v; }
+  [[gnu::always_inline]] static V checkedTotal(V v) { return v; }
   static std::uint64_t left() { return 0; }
 
   /// All ones in the lanes whose bit is set.
@@ -75,7 +84,7 @@ struct DoubleLanes {
 
  private:
   static constexpr std::int64_t kIn = -1;
-  alignas(32) static constexpr std::int64_t kMasks[16][kBlockLanes] = {
+  alignas(32) static constexpr std::int64_t kMasks[16][Numbers::kLanes] = {
       {0, 0, 0, 0},     {kIn, 0, 0, 0},     {0, kIn, 0, 0},     {kIn, kIn, 0, 0},
       {0, 0, kIn, 0},   {kIn, 0, kIn, 0},   {0, kIn, kIn, 0},   {kIn, kIn, kIn, 0},
       {0, 0, 0, kIn},   {kIn, 0, 0, kIn},   {0, kIn, 0, kIn},   {kIn, kIn, 0, kIn},

@@ -5,25 +5,29 @@
 
 #include "contact_block.h"
 
+/// The integer kernels, whatever the vectors. Every rounding is to nearest, ties away from zero: mirror images
+/// stay mirror images.
 namespace samestep {
 namespace {
 
-/// What is the same for every number of 64-bit integers side by side. `Vectors` gives the vector, the product
-/// of the low 32 bits, and the shift. Every rounding is to nearest, ties away from zero: mirror images stay
-/// mirror images.
-template <class Vectors, class N>
-class IntegerLanes {
+/// Speeds of 64 bits. `Vectors` gives the vector of 64-bit integers, the product of the low 32 bits, and the
+/// shifts. A number is split at bit 32, its low half having a sign of its own, so that a product with a
+/// coefficient is two of 32 by 32 bits, exact; one rounding ends each sum of products. The mirror image of a
+/// number has the mirror images of its halves, but for a low half of -2^31, which has no part to round.
+template <class Vectors>
+class WideLanes {
  public:
-  using Numbers = N;
-  using Body = SoftBody<N>;
+  using Numbers = WideNumbers;
+  using Body = SoftBody<Numbers>;
   using V = typename Vectors::V;
+  using C = V;
   static constexpr int kWidth = sizeof(V) / sizeof(std::int64_t);
 
-  static int pointsOf(const ContactBlock<N>& block, int) { return block.points; }
+  static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
   [[gnu::always_inline]] static V zero() { return V{}; }
-  [[gnu::always_inline]] static V whole() { return all(1 << N::kUnitBits); }
+  [[gnu::always_inline]] static V whole() { return all(1 << Numbers::kUnitBits); }
   [[gnu::always_inline]] static V all(std::int64_t x) { return V{} + x; }
-  [[gnu::always_inline]] static V load(const std::int32_t* from) { return Vectors::widen(from); }
+  [[gnu::always_inline]] static C coefficient(const std::int32_t* from) { return Vectors::widen(from); }
   [[gnu::always_inline]] static V load(const std::int64_t* from) {
     return *reinterpret_cast<const typename Vectors::Loose*>(from);
   }
@@ -39,128 +43,21 @@ class IntegerLanes {
   [[gnu::always_inline]] static V within(V x, V low, V high) {
     return select(x < low, low, select(high < x, high, x));
   }
+  [[gnu::always_inline]] static V pushing(V sum, const SoftConstants<Numbers>& constants) {
+    return within(sum, zero(), all(constants.mostSum));
+  }
   [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane,
                                                      const Softness<std::int32_t>* of) {
-    return {choose(stiff, lane, of[1].biasRate, of[0].biasRate),
-            choose(stiff, lane, of[1].massScale, of[0].massScale),
-            choose(stiff, lane, of[1].impulseScale, of[0].impulseScale)};
+    const V mask = Vectors::mask(stiff >> lane);
+    const auto choose = [&](std::int64_t in, std::int64_t out) __attribute__((always_inline)) {
+      return select(mask != zero(), all(in), all(out));
+    };
+    return {choose(of[1].biasRate, of[0].biasRate), choose(of[1].massScale, of[0].massScale),
+            choose(of[1].impulseScale, of[0].impulseScale)};
   }
   [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, V v) {
     return v & ~Vectors::mask(bits >> lane);
   }
-  static void note(const char*, V) {}
-
-  [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
-                                                    V& turn) {
-    V none;
-    Vectors::gather(bodies, &Body::velocity, at, x, y, turn, none);
-  }
-  [[gnu::always_inline]] static void gatherMoved(const Body* bodies, const std::uint32_t* at, V& x, V& y,
-                                                 V& turn, V& bend) {
-    Vectors::gather(bodies, &Body::moved, at, x, y, turn, bend);
-  }
-
- private:
-  [[gnu::always_inline]] static V choose(std::uint8_t bits, int lane, std::int64_t in, std::int64_t out) {
-    return select(Vectors::mask(bits >> lane) != zero(), all(in), all(out));
-  }
-};
-
-/// Speeds of 32 bits.
-template <class Vectors>
-class FastLanes : public IntegerLanes<Vectors, FastNumbers> {
-  using Base = IntegerLanes<Vectors, FastNumbers>;
-
- public:
-  using Numbers = FastNumbers;
-  using Body = SoftBody<Numbers>;
-  using V = typename Vectors::V;
-  using Base::all, Base::load, Base::within;
-
-  [[gnu::always_inline]] static V dot2(V a, V b, V c, V d) {
-    return rounded<Numbers::kUnitBits>(multiply(a, b) + multiply(c, d));
-  }
-  [[gnu::always_inline]] static V cross2(V a, V b, V c, V d) {
-    return rounded<Numbers::kUnitBits>(multiply(a, b) - multiply(c, d));
-  }
-  [[gnu::always_inline]] static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
-    return rounded<Numbers::kUnitBits>(multiply(a0, b0) + multiply(a1, b1) + multiply(a2, b2) +
-                                       multiply(a3, b3));
-  }
-  [[gnu::always_inline]] static V product(V unit, V x) {
-    return rounded<Numbers::kUnitBits>(multiply(unit, x));
-  }
-  [[gnu::always_inline]] static V frictionLimit(V friction, V sum) {
-    return longProduct<Numbers::kFrictionBits>(friction, sum);
-  }
-  [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>& constants) {
-    return within(separation, all(1 - Numbers::kRange), all(constants.mostGap));
-  }
-  [[gnu::always_inline]] static V rate(V way, std::int32_t rate) { return FastLanes::rate(way, all(rate)); }
-  [[gnu::always_inline]] static V rate(V way, V rate) {
-    return rounded<Numbers::kRateBits>(multiply(way, rate));
-  }
-  template <class Axis>
-  [[gnu::always_inline]] static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, V,
-                                        V change) {
-    return rounded<Numbers::kSpinBits>(multiply(load(axis.spinA + lane), change));
-  }
-  template <class Axis>
-  [[gnu::always_inline]] static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, V,
-                                        V change) {
-    return rounded<Numbers::kSpinBits>(multiply(load(axis.spinB + lane), change));
-  }
-  [[gnu::always_inline]] static V soften(const Softness<V>& soft, V full, V before) {
-    return product(soft.massScale, full) + longProduct<Numbers::kUnitBits>(soft.impulseScale, before);
-  }
-
-  /// Notes where a number leaves the range.
-  [[gnu::always_inline]] V checked(V v) {
-    left_ = left_ | (v + Numbers::kRange);
-    return v;
-  }
-  std::uint64_t left() const {
-    std::uint64_t any = 0;
-    for (int i = 0; i < Base::kWidth; ++i) any |= Vectors::at(left_, i) >> 31;
-    return any;
-  }
-  [[gnu::always_inline]] void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x, V y,
-                                              V turn) {
-    Vectors::scatter(bodies, at, fixed, checked(x), checked(y), checked(turn));
-  }
-
- private:
-  [[gnu::always_inline]] static V multiply(V a, V b) { return Vectors::multiply(a, b); }
-  /// x / 2^bits.
-  template <int kBits>
-  [[gnu::always_inline]] static V rounded(V x) {
-    return Vectors::template rounded<kBits>(x);
-  }
-  /// factor * sum / 2^bits for a sum of up to 2^61 that is not negative, and a factor that is not.
-  template <int kBits>
-  [[gnu::always_inline]] static V longProduct(V factor, V sum) {
-    const V low = sum & all((std::int64_t{1} << 31) - 1);
-    const V high = Vectors::template down<31>(sum);
-    const V half = all(std::int64_t{1} << (kBits - 1));
-    return Vectors::template down<kBits>(multiply(factor, low) + half) +
-           (multiply(factor, high) << (31 - kBits));
-  }
-
-  V left_{};
-};
-
-/// Speeds of 64 bits. A number is split at bit 32, its low half having a sign of its own, so that a product
-/// with a coefficient is two of 32 by 32 bits, exact; one rounding ends each sum of products. The mirror image
-/// of a number has the mirror images of its halves, but for a low half of -2^31, which has no part to round.
-template <class Vectors>
-class WideLanes : public IntegerLanes<Vectors, WideNumbers> {
-  using Base = IntegerLanes<Vectors, WideNumbers>;
-
- public:
-  using Numbers = WideNumbers;
-  using Body = SoftBody<Numbers>;
-  using V = typename Vectors::V;
-  using Base::all, Base::load;
 
   [[gnu::always_inline]] static V dot2(V a, V b, V c, V d) {
     return (times(a, b) + times(c, d)).template over<Numbers::kUnitBits>();
@@ -168,14 +65,13 @@ class WideLanes : public IntegerLanes<Vectors, WideNumbers> {
   [[gnu::always_inline]] static V cross2(V a, V b, V c, V d) {
     return (times(a, b) - times(c, d)).template over<Numbers::kUnitBits>();
   }
-  [[gnu::always_inline]] static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
-    return (times(a0, b0) + times(a1, b1) + times(a2, b2) + times(a3, b3))
-        .template over<Numbers::kUnitBits>();
+  [[gnu::always_inline]] static V crosses(V a, V b, V c, V d, V e, V f, V g, V h) {
+    return ((times(a, b) - times(c, d)) + (times(e, f) - times(g, h))).template over<Numbers::kUnitBits>();
   }
   [[gnu::always_inline]] static V product(V unit, V x) {
     return times(unit, x).template over<Numbers::kUnitBits>();
   }
-  [[gnu::always_inline]] static V frictionLimit(V friction, V sum) {
+  [[gnu::always_inline]] static V frictionLimit(const ContactBlock<Numbers>&, V friction, V sum) {
     return times(friction, sum).template over<Numbers::kFrictionBits>();
   }
   [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
@@ -186,19 +82,32 @@ class WideLanes : public IntegerLanes<Vectors, WideNumbers> {
   template <class Axis>
   [[gnu::always_inline]] static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, V,
                                         V change) {
-    return times(load(axis.spinA + lane), change).template over<Numbers::kSpinBits>();
+    return times(coefficient(axis.spinA + lane), change).template over<Numbers::kSpinBits>();
   }
   template <class Axis>
   [[gnu::always_inline]] static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, V,
                                         V change) {
-    return times(load(axis.spinB + lane), change).template over<Numbers::kSpinBits>();
+    return times(coefficient(axis.spinB + lane), change).template over<Numbers::kSpinBits>();
   }
   [[gnu::always_inline]] static V soften(const Softness<V>& soft, V full, V before) {
     return dot2(soft.massScale, full, soft.impulseScale, before);
   }
+  static void note(const char*, V) {}
   /// Its ranges are kept by contract, see docs/ranges.md.
   [[gnu::always_inline]] static V checked(V v) { return v; }
+  [[gnu::always_inline]] static V checkedChange(V v) { return v; }
+  [[gnu::always_inline]] static V checkedTotal(V v) { return v; }
   static std::uint64_t left() { return 0; }
+
+  [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
+                                                    V& turn) {
+    V none;
+    Vectors::gather(bodies, &Body::velocity, at, x, y, turn, none);
+  }
+  [[gnu::always_inline]] static void gatherMoved(const Body* bodies, const std::uint32_t* at, V& x, V& y,
+                                                 V& turn, V& bend) {
+    Vectors::gather(bodies, &Body::moved, at, x, y, turn, bend);
+  }
   [[gnu::always_inline]] static void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x,
                                                      V y, V turn) {
     Vectors::scatter(bodies, at, fixed, x, y, turn);
@@ -227,8 +136,143 @@ class WideLanes : public IntegerLanes<Vectors, WideNumbers> {
   }
 };
 
-/// What vectors have in common whose processor shifts unsigned 64-bit numbers only. `Types` names the
-/// vectors.
+/// All in 32 bits. `Vectors` gives the vector of 32-bit integers and Products, its products in 64 bits.
+///
+/// What no sum may do is leave 32 bits unseen. Of what is checked, speeds and impulses are below 2^28, changes
+/// of impulses, ways and bends below 2^27, totals below 2^30; coefficients are at most 1, but for spins and
+/// friction below 8. Relative speeds are then below 2^30.5, separations below 2^30, limits below 2^31, and
+/// every product is kept whole until it is rounded.
+template <class Vectors>
+class FastLanes {
+ public:
+  using Numbers = FastNumbers;
+  using Body = SoftBody<Numbers>;
+  using V = typename Vectors::V;
+  using C = typename Vectors::Coefficients;
+  static constexpr int kWidth = sizeof(V) / sizeof(std::int32_t);
+
+  static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
+  [[gnu::always_inline]] static V zero() { return V{}; }
+  [[gnu::always_inline]] static C whole() { return C(all(1 << Numbers::kUnitBits)); }
+  [[gnu::always_inline]] static V all(std::int32_t x) { return V{} + x; }
+  [[gnu::always_inline]] static V load(const std::int32_t* from) {
+    return *reinterpret_cast<const typename Vectors::Loose*>(from);
+  }
+  [[gnu::always_inline]] static C coefficient(const std::int32_t* from) { return C::at(from); }
+  [[gnu::always_inline]] static void store(std::int32_t* to, V v) {
+    *reinterpret_cast<typename Vectors::Loose*>(to) = v;
+  }
+  template <class Mask>
+  [[gnu::always_inline]] static V select(Mask mask, V a, V b) {
+    return mask ? a : b;
+  }
+  [[gnu::always_inline]] static auto above(V a, V b) { return a > b; }
+  [[gnu::always_inline]] static V greater(V a, V b) { return Vectors::greater(a, b); }
+  [[gnu::always_inline]] static V within(V x, V low, V high) {
+    return Vectors::less(Vectors::greater(x, low), high);
+  }
+  /// Too large a sum is seen where it is checked.
+  [[gnu::always_inline]] static V pushing(V sum, const SoftConstants<Numbers>&) {
+    return greater(sum, zero());
+  }
+  [[gnu::always_inline]] static Softness<C> softness(std::uint8_t stiff, int lane,
+                                                     const Softness<std::int32_t>* of) {
+    const V mask = Vectors::mask(stiff >> lane);
+    const auto choose = [&](std::int32_t in, std::int32_t out) __attribute__((always_inline)) {
+      return C(all(out) ^ (mask & all(in ^ out)));
+    };
+    return {choose(of[1].biasRate, of[0].biasRate), choose(of[1].massScale, of[0].massScale),
+            choose(of[1].impulseScale, of[0].impulseScale)};
+  }
+  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, V v) {
+    return v & ~Vectors::mask(bits >> lane);
+  }
+
+  [[gnu::always_inline]] static V dot2(const C& a, V b, const C& c, V d) {
+    return over<Numbers::kUnitBits>(times(a, b) + times(c, d));
+  }
+  [[gnu::always_inline]] static V cross2(const C& a, V b, const C& c, V d) {
+    return over<Numbers::kUnitBits>(times(a, b) - times(c, d));
+  }
+  [[gnu::always_inline]] static V crosses(const C& a, V b, const C& c, V d, const C& e, V f, const C& g,
+                                          V h) {
+    return over<Numbers::kUnitBits>((times(a, b) - times(c, d)) + (times(e, f) - times(g, h)));
+  }
+  [[gnu::always_inline]] static V product(const C& unit, V x) { return over<Numbers::kUnitBits>(times(unit, x)); }
+  [[gnu::always_inline]] static V frictionLimit(const ContactBlock<Numbers>& block, const C& friction,
+                                                V sum) {
+    const V limit = over<Numbers::kFrictionBits>(times(friction, sum));
+    return Vectors::less(limit, all((1 << 30) >> block.frictionShift)) << block.frictionShift;
+  }
+  [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>& constants) {
+    return within(separation, all(-constants.mostOverlap), all(constants.mostGap));
+  }
+  [[gnu::always_inline]] static V rate(V way, std::int32_t rate) {
+    return FastLanes::rate(way, C(all(rate)));
+  }
+  [[gnu::always_inline]] static V rate(V way, const C& rate) { return over<Numbers::kRateBits>(times(rate, way)); }
+  template <class Axis>
+  [[gnu::always_inline]] static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, const C&,
+                                        V change) {
+    return over<Numbers::kSpinBits>(times(coefficient(axis.spinA + lane), change));
+  }
+  template <class Axis>
+  [[gnu::always_inline]] static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, const C&,
+                                        V change) {
+    return over<Numbers::kSpinBits>(times(coefficient(axis.spinB + lane), change));
+  }
+  [[gnu::always_inline]] static V soften(const Softness<C>& soft, V full, V before) {
+    return dot2(soft.massScale, full, soft.impulseScale, before);
+  }
+  static void note(const char*, V) {}
+
+  /// Notes where a speed or an impulse leaves the range.
+  [[gnu::always_inline]] V checked(V v) {
+    left_ = left_ | (v + Numbers::kRange);
+    return v;
+  }
+  [[gnu::always_inline]] V checkedChange(V v) {
+    left_ = left_ | (v + v + Numbers::kRange);
+    return v;
+  }
+  [[gnu::always_inline]] V checkedTotal(V v) {
+    left_ = left_ | ((v >> 2) + Numbers::kRange);
+    return v;
+  }
+  std::uint64_t left() const {
+    std::uint64_t any = 0;
+    for (int i = 0; i < kWidth; ++i) any |= Vectors::at(left_, i) >> 29;
+    return any;
+  }
+
+  [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
+                                                    V& turn) {
+    V none;
+    Vectors::gather(bodies, &Body::velocity, at, x, y, turn, none);
+  }
+  [[gnu::always_inline]] static void gatherMoved(const Body* bodies, const std::uint32_t* at, V& x, V& y,
+                                                 V& turn, V& bend) {
+    Vectors::gather(bodies, &Body::moved, at, x, y, turn, bend);
+  }
+  [[gnu::always_inline]] void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x, V y,
+                                              V turn) {
+    Vectors::scatter(bodies, at, fixed, checked(x), checked(y), checked(turn));
+  }
+
+ private:
+  using Products = typename Vectors::Products;
+
+  [[gnu::always_inline]] static Products times(const C& a, V b) { return Vectors::times(a, b); }
+  template <int kBits>
+  [[gnu::always_inline]] static V over(const Products& x) {
+    return Vectors::template over<kBits>(x);
+  }
+
+  V left_{};
+};
+
+/// What vectors of 64-bit integers have in common whose processor shifts unsigned ones only. `Types` names
+/// the vectors.
 template <class Types>
 struct UnsignedShifts : Types {
   using V = typename Types::V;
@@ -246,41 +290,123 @@ struct UnsignedShifts : Types {
   }
 };
 
-/// One at a time, on every machine: for the fast kernel.
-struct OneInteger {
-  using V = std::int64_t;
-  using Loose = V;
+/// Products of 32-bit integers side by side in 64 bits: those of the even places and those of the odd ones,
+/// from the low halves. `Types` names the vectors and multiplies.
+template <class Types>
+struct EvenAndOdd {
+  using V = typename Types::Half;
+  using U = typename Types::U;
+  struct Products {
+    U even, odd;
 
-  static V widen(const std::int32_t* from) { return *from; }
-  static V multiply(V a, V b) {
-    return std::int64_t{static_cast<std::int32_t>(a)} * static_cast<std::int32_t>(b);
+    [[gnu::always_inline]] friend Products operator+(const Products& a, const Products& b) {
+      return {a.even + b.even, a.odd + b.odd};
+    }
+    [[gnu::always_inline]] friend Products operator-(const Products& a, const Products& b) {
+      return {a.even - b.even, a.odd - b.odd};
+    }
+  };
+
+  /// In the low halves, what is in the even places and in the odd ones.
+  struct Coefficients {
+    U even, odd;
+
+    Coefficients() = default;
+    [[gnu::always_inline]] explicit Coefficients(V v) : even(reinterpret_cast<U>(v)), odd(even >> 32) {}
+    /// The odd ones by a load that begins one place later: the array is not the last of its block.
+    [[gnu::always_inline]] static Coefficients at(const std::int32_t* from) {
+      Coefficients c;
+      c.even = reinterpret_cast<U>(*reinterpret_cast<const typename Types::LooseHalf*>(from));
+      c.odd = reinterpret_cast<U>(*reinterpret_cast<const typename Types::LooseHalf*>(from + 1));
+      return c;
+    }
+    [[gnu::always_inline]] friend Coefficients operator-(const Coefficients& a, const Coefficients& b) {
+      Coefficients c;
+      c.even = a.even - b.even;
+      c.odd = a.odd - b.odd;
+      return c;
+    }
+  };
+
+  [[gnu::always_inline]] static Products times(const Coefficients& a, V b) {
+    return {Types::multiply(a.even, reinterpret_cast<U>(b)),
+            Types::multiply(a.odd, reinterpret_cast<U>(b) >> 32)};
   }
+  /// The low 32 bits of each, by 2^bits.
   template <int kBits>
-  static V rounded(V x) {
-    return (x + (std::int64_t{1} << (kBits - 1)) - (x < 0)) >> kBits;
+  [[gnu::always_inline]] static V over(const Products& x) {
+    constexpr std::uint64_t kHalf = std::uint64_t{1} << (kBits - 1);
+    const U even = (x.even + kHalf - (x.even >> 63)) >> kBits;
+    const U odd = (x.odd + kHalf - (x.odd >> 63)) << (32 - kBits);
+    return reinterpret_cast<V>(Types::oddOf(even, odd));
   }
-  /// x / 2^bits, of an x that is not negative.
-  template <int kBits>
-  static V down(V x) {
-    return x >> kBits;
-  }
-  static V mask(int bits) { return -V{bits & 1}; }
-  static std::uint64_t at(V v, int) { return static_cast<std::uint64_t>(v); }
+};
+
+/// A 32-bit integer that wraps.
+struct OneInteger {
+  std::int32_t value = 0;
+
+  friend OneInteger operator+(OneInteger a, OneInteger b) { return wrap(a.bits() + b.bits()); }
+  friend OneInteger operator-(OneInteger a, OneInteger b) { return wrap(a.bits() - b.bits()); }
+  friend OneInteger operator-(OneInteger a) { return wrap(0 - a.bits()); }
+  friend OneInteger operator+(OneInteger a, std::int32_t b) { return a + OneInteger{b}; }
+  friend OneInteger operator&(OneInteger a, OneInteger b) { return {a.value & b.value}; }
+  friend OneInteger operator|(OneInteger a, OneInteger b) { return {a.value | b.value}; }
+  friend OneInteger operator^(OneInteger a, OneInteger b) { return {a.value ^ b.value}; }
+  friend OneInteger operator~(OneInteger a) { return {~a.value}; }
+  friend OneInteger operator>>(OneInteger a, int bits) { return {a.value >> bits}; }
+  friend OneInteger operator<<(OneInteger a, int bits) { return wrap(a.bits() << bits); }
+  friend bool operator>(OneInteger a, OneInteger b) { return a.value > b.value; }
+
+ private:
+  std::uint32_t bits() const { return static_cast<std::uint32_t>(value); }
+  static OneInteger wrap(std::uint32_t bits) { return {static_cast<std::int32_t>(bits)}; }
+};
+
+/// One at a time, on every machine: for the fast kernel.
+struct OneAtATime {
+  using V = OneInteger;
+  using Loose = V;
+  struct Coefficients : OneInteger {
+    explicit Coefficients(OneInteger x) : OneInteger(x) {}
+    static Coefficients at(const std::int32_t* from) { return Coefficients({*from}); }
+    friend Coefficients operator-(Coefficients a, Coefficients b) {
+      return Coefficients(OneInteger(a) - OneInteger(b));
+    }
+  };
+  struct Products {
+    std::int64_t value;
+    friend Products operator+(Products a, Products b) { return wrap(a.bits() + b.bits()); }
+    friend Products operator-(Products a, Products b) { return wrap(a.bits() - b.bits()); }
+    std::uint64_t bits() const { return static_cast<std::uint64_t>(value); }
+    static Products wrap(std::uint64_t bits) { return {static_cast<std::int64_t>(bits)}; }
+  };
   using Body = SoftBody<FastNumbers>;
+
+  static V greater(V a, V b) { return b > a ? b : a; }
+  static V less(V a, V b) { return a > b ? b : a; }
+  static V mask(int bits) { return {-(bits & 1)}; }
+  static std::uint64_t at(V v, int) { return static_cast<std::uint32_t>(v.value); }
+  static Products times(Coefficients a, V b) { return {std::int64_t{a.value} * b.value}; }
+  template <int kBits>
+  static V over(Products x) {
+    const std::uint64_t raised = x.bits() + (std::uint64_t{1} << (kBits - 1)) - (x.bits() >> 63);
+    return {static_cast<std::int32_t>(static_cast<std::uint32_t>(raised >> kBits))};
+  }
   static void gather(const Body* bodies, std::int32_t (Body::*part)[4], const std::uint32_t* at, V& x, V& y,
                      V& z, V& w) {
     const std::int32_t* from = bodies[*at].*part;
-    x = from[0];
-    y = from[1];
-    z = from[2];
-    w = from[3];
+    x = {from[0]};
+    y = {from[1]};
+    z = {from[2]};
+    w = {from[3]};
   }
   static void scatter(Body* bodies, const std::uint32_t* at, int fixed, V x, V y, V turn) {
     if ((fixed & 1) != 0) return;
     std::int32_t* to = bodies[*at].velocity;
-    to[0] = static_cast<std::int32_t>(x);
-    to[1] = static_cast<std::int32_t>(y);
-    to[2] = static_cast<std::int32_t>(turn);
+    to[0] = x.value;
+    to[1] = y.value;
+    to[2] = turn.value;
   }
 };
 

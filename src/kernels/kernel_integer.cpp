@@ -5,6 +5,6 @@
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers> fastBy1 = kPassesOf<FastLanes<OneInteger>>;
+const ContactPasses<FastNumbers> fastBy1 = kPassesOf<FastLanes<OneAtATime>>;
 
 }  // namespace samestep::kernels

@@ -3,13 +3,13 @@
 #include "kernels.h"
 
 #ifdef __AVX2__
-#include "integers4.h"
+#include "integers_avx2.h"
 #include "solve_contacts.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastAvx2 = &kPassesOf<FastLanes<FourIntegers>>;
-const ContactPasses<WideNumbers>* const wideAvx2 = &kPassesOf<WideLanes<FourIntegers>>;
+const ContactPasses<FastNumbers>* const fastAvx2 = &kPassesOf<FastLanes<FastAvx2>>;
+const ContactPasses<WideNumbers>* const wideAvx2 = &kPassesOf<WideLanes<WideAvx2>>;
 
 }  // namespace samestep::kernels
 #else

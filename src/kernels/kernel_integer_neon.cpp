@@ -7,8 +7,8 @@
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastNeon = &kPassesOf<FastLanes<TwoIntegersOfNeon>>;
-const ContactPasses<WideNumbers>* const wideNeon = &kPassesOf<WideLanes<TwoIntegersOfNeon>>;
+const ContactPasses<FastNumbers>* const fastNeon = &kPassesOf<FastLanes<FastNeon>>;
+const ContactPasses<WideNumbers>* const wideNeon = &kPassesOf<WideLanes<WideNeon>>;
 
 }  // namespace samestep::kernels
 #else

@@ -3,13 +3,13 @@
 #include "kernels.h"
 
 #ifdef __SSE4_2__
-#include "integers2.h"
+#include "integers_sse42.h"
 #include "solve_contacts.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastSse42 = &kPassesOf<FastLanes<TwoIntegers>>;
-const ContactPasses<WideNumbers>* const wideSse42 = &kPassesOf<WideLanes<TwoIntegers>>;
+const ContactPasses<FastNumbers>* const fastSse42 = &kPassesOf<FastLanes<FastSse42>>;
+const ContactPasses<WideNumbers>* const wideSse42 = &kPassesOf<WideLanes<WideSse42>>;
 
 }  // namespace samestep::kernels
 #else

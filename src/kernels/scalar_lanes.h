@@ -27,6 +27,7 @@ struct TwoScalars {
 template <Scalar S>
 struct ScalarLanes {
   using V = TwoScalars<S>;
+  using C = V;
   using Numbers = PlainNumbers<S, true>;
   using Body = SoftBody<Numbers>;
   static constexpr int kWidth = 2;
@@ -38,6 +39,7 @@ struct ScalarLanes {
   [[gnu::always_inline]] static V whole() { return all(S(1)); }
   [[gnu::always_inline]] static V all(S x) { return {x, x}; }
   [[gnu::always_inline]] static V load(const S* from) { return {from[0], from[1]}; }
+  [[gnu::always_inline]] static C coefficient(const S* from) { return load(from); }
   [[gnu::always_inline]] static void store(S* to, const V& v) {
     to[0] = v.a;
     to[1] = v.b;
@@ -59,17 +61,20 @@ struct ScalarLanes {
   [[gnu::always_inline]] static V cross2(const V& a, const V& b, const V& c, const V& d) {
     return {cross(a.a, b.a, c.a, d.a), cross(a.b, b.b, c.b, d.b)};
   }
-  [[gnu::always_inline]] static V dotOf4(const V& a0, const V& b0, const V& a1, const V& b1, const V& a2,
-                                         const V& b2, const V& a3, const V& b3) {
-    return {dot4(a0.a, b0.a, a1.a, b1.a, a2.a, b2.a, a3.a, b3.a),
-            dot4(a0.b, b0.b, a1.b, b1.b, a2.b, b2.b, a3.b, b3.b)};
+  [[gnu::always_inline]] static V crosses(const V& a, const V& b, const V& c, const V& d, const V& e,
+                                          const V& f, const V& g, const V& h) {
+    return {dot4(a.a, b.a, -c.a, d.a, e.a, f.a, -g.a, h.a), dot4(a.b, b.b, -c.b, d.b, e.b, f.b, -g.b, h.b)};
   }
   [[gnu::always_inline]] static V near(const V& separation, const SoftConstants<Numbers>&) {
     return separation;
   }
   [[gnu::always_inline]] static V product(const V& x, const V& y) { return {x.a * y.a, x.b * y.b}; }
-  [[gnu::always_inline]] static V frictionLimit(const V& friction, const V& sum) {
+  [[gnu::always_inline]] static V frictionLimit(const ContactBlock<Numbers>&, const V& friction,
+                                                const V& sum) {
     return product(friction, sum);
+  }
+  [[gnu::always_inline]] static V pushing(const V& sum, const SoftConstants<Numbers>& constants) {
+    return within(sum, zero(), all(constants.mostSum));
   }
   [[gnu::always_inline]] static V rate(const V& way, S rate) { return product(way, all(rate)); }
   [[gnu::always_inline]] static V rate(const V& way, const V& rate) { return product(way, rate); }
@@ -88,6 +93,8 @@ struct ScalarLanes {
   }
   /// Its ranges are kept by contract, see docs/ranges.md.
   [[gnu::always_inline]] static V checked(const V& v) { return v; }
+  [[gnu::always_inline]] static V checkedChange(const V& v) { return v; }
+  [[gnu::always_inline]] static V checkedTotal(const V& v) { return v; }
   [[gnu::always_inline]] static std::uint64_t left() { return 0; }
   [[gnu::always_inline]] static void note(const char* name, const V& v) {
     highWater<S>(name, v.a);
@@ -139,6 +146,7 @@ struct ScalarLanes {
 template <FixedNumber S>
 struct WideScalarLanes {
   using V = S;
+  using C = S;
   using Numbers = WideNumbers;
   using Body = SoftBody<Numbers>;
   static constexpr int kWidth = 1;
@@ -147,8 +155,8 @@ struct WideScalarLanes {
   static V zero() { return V(); }
   static V whole() { return all(1 << Numbers::kUnitBits); }
   static V all(std::int64_t x) { return S::fromRaw(x); }
-  static V load(const std::int32_t* from) { return all(*from); }
   static V load(const std::int64_t* from) { return all(*from); }
+  static C coefficient(const std::int32_t* from) { return all(*from); }
   static void store(std::int64_t* to, V v) { *to = v.raw(); }
   static bool above(V x, V y) { return x > y; }
   static V select(bool mask, V x, V y) { return mask ? x : y; }
@@ -156,26 +164,33 @@ struct WideScalarLanes {
   static V within(V x, V low, V high) { return clamp(x, low, high); }
   static V dot2(V a, V b, V c, V d) { return over<Numbers::kUnitBits>(times(a, b) + times(c, d)); }
   static V cross2(V a, V b, V c, V d) { return over<Numbers::kUnitBits>(times(a, b) - times(c, d)); }
-  static V dotOf4(V a0, V b0, V a1, V b1, V a2, V b2, V a3, V b3) {
-    return over<Numbers::kUnitBits>(times(a0, b0) + times(a1, b1) + times(a2, b2) + times(a3, b3));
+  static V crosses(C a, V b, C c, V d, C e, V f, C g, V h) {
+    return over<Numbers::kUnitBits>((times(a, b) - times(c, d)) + (times(e, f) - times(g, h)));
   }
   static V product(V unit, V x) { return over<Numbers::kUnitBits>(times(unit, x)); }
-  static V frictionLimit(V friction, V sum) { return over<Numbers::kFrictionBits>(times(friction, sum)); }
+  static V frictionLimit(const ContactBlock<Numbers>&, V friction, V sum) {
+    return over<Numbers::kFrictionBits>(times(friction, sum));
+  }
+  static V pushing(V sum, const SoftConstants<Numbers>& constants) {
+    return within(sum, zero(), all(constants.mostSum));
+  }
   static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
   static V rate(V way, std::int32_t rate) { return WideScalarLanes::rate(way, all(rate)); }
   static V rate(V way, V rate) { return over<Numbers::kRateBits>(times(rate, way)); }
   template <class Axis>
   static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, V, V change) {
-    return over<Numbers::kSpinBits>(times(load(axis.spinA + lane), change));
+    return over<Numbers::kSpinBits>(times(coefficient(axis.spinA + lane), change));
   }
   template <class Axis>
   static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, V, V change) {
-    return over<Numbers::kSpinBits>(times(load(axis.spinB + lane), change));
+    return over<Numbers::kSpinBits>(times(coefficient(axis.spinB + lane), change));
   }
   static V soften(const Softness<V>& soft, V full, V before) {
     return dot2(soft.massScale, full, soft.impulseScale, before);
   }
   static V checked(V v) { return v; }
+  static V checkedChange(V v) { return v; }
+  static V checkedTotal(V v) { return v; }
   static std::uint64_t left() { return 0; }
   static void note(const char* name, V v) { highWater<S>(name, v); }
   static V unless(std::uint8_t bits, int lane, V v) { return (bits >> lane & 1) != 0 ? zero() : v; }

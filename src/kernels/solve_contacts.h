@@ -3,13 +3,13 @@
 
 #include "contact_block.h"
 
-/// The pass over contact blocks, written once for every kernel. `L` says what a group of lanes is: its vector
-/// V of kWidth numbers and the operations on it. All of it has internal linkage, since each kernel is built
+/// The pass over contact blocks, written once for every kernel. `L` says what a group of lanes is: its vectors
+/// of kWidth numbers, V of speeds and C of coefficients, and the operations on them. All of it has internal linkage, since each kernel is built
 /// with flags of its own.
 namespace samestep {
 namespace {
 
-/// Three numbers of a body, of each lane.
+/// Three numbers of a body, of each lane: what is made from V, speeds and ways, where C are coefficients.
 template <class L>
 struct LaneMotion {
   typename L::V x, y, turn;
@@ -23,6 +23,7 @@ template <class L, bool kSprings, class N = typename L::Numbers>
                                               SoftBody<N>* bodies, const SoftConstants<N>& constants,
                                               L& lanes) {
   using V = typename L::V;
+  using C = typename L::C;
   LaneMotion<L> velocityA, velocityB, movedA, movedB;
   V bendA, bendB;
   L::gatherVelocity(bodies, block.bodyA + lane, velocityA.x, velocityA.y, velocityA.turn);
@@ -32,9 +33,9 @@ template <class L, bool kSprings, class N = typename L::Numbers>
   bendA = L::unless(block.roundA, lane, bendA);
   bendB = L::unless(block.roundB, lane, bendB);
 
-  const V nx = L::load(block.normalX + lane);
-  const V ny = L::load(block.normalY + lane);
-  const V friction = L::load(block.friction + lane);
+  const C nx = L::coefficient(block.normalX + lane);
+  const C ny = L::coefficient(block.normalY + lane);
+  const C friction = L::coefficient(block.friction + lane);
   const V dx = velocityB.x - velocityA.x;
   const V dy = velocityB.y - velocityA.y;
   V normalSpeed = L::dot2(nx, dx, ny, dy);
@@ -47,36 +48,38 @@ template <class L, bool kSprings, class N = typename L::Numbers>
   const auto rub = [&]() __attribute__((always_inline)) {
     for (int i = 0; i < points; ++i) {
       auto& axis = block.point[i].tangent;
-      const V armA = L::load(axis.armA + lane);
-      const V armB = L::load(axis.armB + lane);
+      const C armA = L::coefficient(axis.armA + lane);
+      const C armB = L::coefficient(axis.armB + lane);
       const V before = L::load(axis.sum + lane);
-      const V limit = L::frictionLimit(friction, L::load(block.point[i].normal.sum + lane));
+      const V limit = L::frictionLimit(block, friction, L::load(block.point[i].normal.sum + lane));
       const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
-      const V sum = L::within(before - L::product(L::load(axis.mass + lane), speed), -limit, limit);
+      const V sum =
+          lanes.checked(L::within(before - L::product(L::coefficient(axis.mass + lane), speed), -limit, limit));
       L::store(axis.sum + lane, sum);
-      const V change = lanes.checked(sum - before);
+      const V change = lanes.checkedChange(sum - before);
       tangentSpeed = tangentSpeed + change;
       tangentPart = tangentPart + change;
-      velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
-      velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
+      velocityA.turn = lanes.checked(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
+      velocityB.turn = lanes.checked(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
       L::note("soft step: friction limit", limit);
       L::note("soft step: relative speed", speed);
       if constexpr (!kSprings) {
-        L::store(rest.tangentTotal[i] + lane, L::load(rest.tangentTotal[i] + lane) + sum);
+        L::store(rest.tangentTotal[i] + lane,
+                 lanes.checkedTotal(L::load(rest.tangentTotal[i] + lane) + sum));
       }
     }
   };
   const auto push = [&]() __attribute__((always_inline)) {
     for (int i = 0; i < points; ++i) {
       auto& axis = block.point[i].normal;
-      const V armA = L::load(axis.armA + lane);
-      const V armB = L::load(axis.armB + lane);
+      const C armA = L::coefficient(axis.armA + lane);
+      const C armB = L::coefficient(axis.armB + lane);
       const V before = L::load(axis.sum + lane);
       // The arms of the tangent are r . n: how far a bend comes nearer.
       const V separation = L::near(L::load(block.point[i].separation + lane) + apart +
-                                       L::dotOf4(armB, movedB.turn, -armA, movedA.turn,  //
-                                                 L::load(block.point[i].tangent.armA + lane), bendA,
-                                                 -L::load(block.point[i].tangent.armB + lane), bendB),
+                                       L::crosses(armB, movedB.turn, armA, movedA.turn,  //
+                                                  L::coefficient(block.point[i].tangent.armA + lane), bendA,
+                                                  L::coefficient(block.point[i].tangent.armB + lane), bendB),
                                    constants);
       // Not touching yet: may come as near as it is within this substep.
       const V gap = L::rate(separation, constants.perSubstep);
@@ -87,22 +90,23 @@ template <class L, bool kSprings, class N = typename L::Numbers>
         const auto free = L::above(separation, L::zero());
         const V apartSpeed = L::greater(L::rate(separation, soft.biasRate), L::all(-constants.pushSpeed));
         const V target = L::select(free, gap, apartSpeed);
-        const V full = L::product(L::load(axis.mass + lane), lanes.checked(speed + target));
+        const V full = L::product(L::coefficient(axis.mass + lane), lanes.checked(speed + target));
         correction = L::select(free, full, L::soften(soft, full, before));
       } else {
-        correction = L::product(L::load(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
+        correction = L::product(L::coefficient(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
       }
-      const V sum = L::within(before - correction, L::zero(), L::all(constants.mostSum));
+      const V sum = lanes.checked(L::pushing(before - correction, constants));
       L::store(axis.sum + lane, sum);
-      const V change = lanes.checked(sum - before);
+      const V change = lanes.checkedChange(sum - before);
       normalSpeed = normalSpeed + change;
       normalPart = normalPart + change;
-      velocityA.turn = velocityA.turn - L::spinA(block.moments, axis, lane, armA, change);
-      velocityB.turn = velocityB.turn + L::spinB(block.moments, axis, lane, armB, change);
+      velocityA.turn = lanes.checked(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
+      velocityB.turn = lanes.checked(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
       L::note("soft step: relative speed", speed);
       L::note("soft step: target speed", gap);
       if constexpr (!kSprings) {
-        L::store(rest.normalTotal[i] + lane, L::load(rest.normalTotal[i] + lane) + sum);
+        L::store(rest.normalTotal[i] + lane,
+                 lanes.checkedTotal(L::load(rest.normalTotal[i] + lane) + sum));
       }
     }
   };
@@ -114,12 +118,10 @@ template <class L, bool kSprings, class N = typename L::Numbers>
     rub();
   }
 
-  normalPart = lanes.checked(normalPart);
-  tangentPart = lanes.checked(tangentPart);
   const V x = L::cross2(nx, normalPart, ny, tangentPart);
   const V y = L::dot2(ny, normalPart, nx, tangentPart);
-  const V shareA = L::load(block.shareA + lane);
-  const V shareB = L::whole() - shareA;
+  const C shareA = L::coefficient(block.shareA + lane);
+  const C shareB = L::whole() - shareA;
   lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane, velocityA.x - L::product(shareA, x),
                         velocityA.y - L::product(shareA, y), velocityA.turn);
   lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane, velocityB.x + L::product(shareB, x),
@@ -131,8 +133,8 @@ std::uint64_t passOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32
                        const SoftConstants<N>& constants) {
   L lanes;
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (int lane = 0; lane < kBlockLanes; lane += L::kWidth) {
-      if (L::kWidth < kBlockLanes && blocks[i].count[lane] == 0) break;
+    for (int lane = 0; lane < N::kLanes; lane += L::kWidth) {
+      if (L::kWidth < N::kLanes && blocks[i].count[lane] == 0) break;
       solveLanes<L, kSprings>(blocks[i], rests[i], lane, bodies, constants, lanes);
     }
   }
