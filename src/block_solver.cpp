@@ -80,6 +80,9 @@ PairResponse<S> respondWith(const Body<S>& a, S momentPerMassA, const Body<S>& b
   return {heavy, S(1), momentPerMassA * heavy, momentPerMassB};
 }
 
+/// How often springs are solved once more where something strikes.
+constexpr int kMorePasses = 2;
+
 /// The largest inverse moment by the squared radius that integers hold, in units of spins: 16 and more.
 constexpr std::int64_t kMostMoment = std::int64_t{1} << 32;
 
@@ -217,7 +220,8 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
 template <Scalar S, class N>
 void BlockSolver<S, N>::openBlock(std::uint32_t at) {
   Block& block = blocks_[at];
-  block.points = block.bounces = block.roundA = block.roundB = block.stiff = block.frictionShift = 0;
+  block.points = block.bounces = block.strikes = block.frictionShift = 0;
+  block.roundA = block.roundB = block.stiff = 0;
   block.fixedA = block.fixedB = 0;
 }
 
@@ -345,14 +349,19 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
   const bool alone = masses == S(1);
   const bool equal = masses == S(2);
   const auto keptSum = [&](S speed) { return alone ? speed : equal ? speed + speed : speed * masses; };
-  const auto bounceOf = [&](S armA, S armB) {
-    if (pair.elasticity == S(0)) return S(0);
+  // The speed that a bounce shall leave; notes a strike.
+  const auto bounceOf = [&](const Contact<S>& contact, S armA, S armB) {
     const Vector<S> dv = b.velocity() - a.velocity();
     const S approach =
         dot(n.x, dv.x, n.y, dv.y) + cross(armB, b.angularVelocity(), armA, a.angularVelocity());
     if (approach >= -bounceThreshold) return S(0);
+    if (contact.normalSpeed == S(0)) block.strikes = 1;
+    if (pair.elasticity == S(0)) return S(0);
     block.bounces = 1;
     return -(pair.elasticity * approach);
+  };
+  const auto asksForSpeed = [&](const Contact<S>& contact) {
+    return pair.elasticity != S(0) || contact.normalSpeed == S(0);
   };
   // An arm by the normal is the same in the body's coordinates, where points and A's normal are kept.
   const Vector<S> nA = pair.localNormal;
@@ -408,9 +417,9 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
       tangentPart += tangentKept;
       rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = 0;
       rest.bounce[i][lane] = 0;
-      if (pair.elasticity != S(0)) {
+      if (asksForSpeed(contact)) {
         rest.bounce[i][lane] =
-            units_.sum(bounceOf(units_.fromArm(placeA.across, (*starts_)[indexA].radiusBits),
+            units_.sum(bounceOf(contact, units_.fromArm(placeA.across, (*starts_)[indexA].radiusBits),
                                 units_.fromArm(placeB.across, (*starts_)[indexB].radiusBits)),
                        misfit);
       }
@@ -468,7 +477,8 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
       normalPart += point.normal.sum[lane];
       tangentPart += point.tangent.sum[lane];
       rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = S(0);
-      rest.bounce[i][lane] = bounceOf(point.normal.armA[lane], point.normal.armB[lane]);
+      rest.bounce[i][lane] =
+          asksForSpeed(contact) ? bounceOf(contact, point.normal.armA[lane], point.normal.armB[lane]) : S(0);
     }
     const S x = cross(n.x, normalPart, n.y, tangentPart);
     const S y = dot(n.y, normalPart, n.x, tangentPart);
@@ -480,7 +490,7 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
 }
 
 template <Scalar S, class N>
-bool BlockSolver<S, N>::run(Crew& crew) {
+bool BlockSolver<S, N>::run(bool strikes, Crew& crew) {
   const auto count = static_cast<std::uint32_t>(bodies_.size());
   Finding left;
   const auto pass = [&](ContactPass<N> kernel) {
@@ -491,6 +501,7 @@ bool BlockSolver<S, N>::run(Crew& crew) {
       left.note(integrateVelocities(begin, end) != 0);
     });
     pass(passes_.solve);
+    for (int more = 0; strikes && more < kMorePasses; ++more) pass(passes_.solve);
     crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
       left.note(integratePositions(begin, end) != 0);
     });

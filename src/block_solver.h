@@ -40,11 +40,14 @@ class BlockSolver {
                S bounceThreshold);
   /// Empties the lanes of a block that hold no pair.
   void closeBlock(std::uint32_t at, int lanes);
-  /// Whether any point of the block may bounce.
+  /// Whether any point of the block may bounce; whether any strikes.
   bool bounces(std::uint32_t at) const { return blocks_[at].bounces != 0; }
+  bool strikes(std::uint32_t at) const { return blocks_[at].strikes != 0; }
   /// Makes all substeps.
+  /// @param strikes  whether any point does: nothing kept from the last step says yet how the blow goes on
+  ///                 through a pile, so that springs are solved twice in each substep
   /// @return false where a number left the range on the way: nothing is then worth anything
-  bool run(Crew& crew);
+  bool run(bool strikes, Crew& crew);
   /// After the last one: what bounces.
   void bounce();
   SoftMotion<S> motion(std::uint32_t body) const;

@@ -108,8 +108,8 @@ struct alignas(64) ContactBlock {
   /// A bit per lane: whether contacts leave A or B as it is; whether its surface is round, so that turning
   /// does not move it; whether the contact is one with a body that nothing moves.
   std::uint8_t fixedA, fixedB, roundA, roundB, stiff;
-  /// Whether any point bounces.
-  std::uint8_t bounces;
+  /// Whether any point bounces; whether any strikes: approaches fast and holds nothing yet.
+  std::uint8_t bounces, strikes;
   /// Of 32 bits: the friction is 2^this times what is written, where that does not hold it.
   std::uint8_t frictionShift;
   alignas(32) typename N::Coefficient normalX[N::kLanes];

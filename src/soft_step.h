@@ -78,6 +78,8 @@ struct SoftStep {
   std::vector<BlockGroup> groups;
   /// No kept impulse is larger, as a speed of the lighter body, m/s; asked for where 32 bits are to do.
   S mostKept{};
+  /// Whether any contact may bounce, whether any strikes: see BlockSolver.
+  bool bounces = false, strikes = false;
   SoftSolvers<S> solvers;
 
   /// Forgets the last step.

@@ -133,7 +133,6 @@ struct Space<S>::Impl : SpaceCache<S> {
   // Scratch: of one step.
   ImpulseSolver<S> solver;
   SoftStep<S> soft;
-  bool softBounces = false;
   ContactGroups groups;
   std::vector<std::uint32_t> solvedPairs;
   std::vector<std::uint32_t> groupOrder;

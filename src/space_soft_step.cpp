@@ -29,7 +29,7 @@ constexpr std::uint32_t kAhead = 6;
 template <Scalar S, class Solver, class Impl>
 bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs,
                const SlotMap<Body<S>, BodyId>& bodies, S bounceThreshold) {
-  Finding misfit, bounces;
+  Finding misfit, bounces, strikes;
   const auto pairAt = [&](std::uint32_t i) -> const Pair<S>& { return pairs[impl.solvedPairs[impl.groupOrder[i]]]; };
   const auto last = static_cast<std::uint32_t>(impl.groupOrder.size());
   // The lot between groups scatters what is asked for.
@@ -61,6 +61,7 @@ bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs,
     }
     solver.closeBlock(block, static_cast<int>(end - begin));
     bounces.note(solver.bounces(block));
+    strikes.note(solver.strikes(block));
   };
   impl.crew.during(impl.crew.helpsWith(impl.solvedPairs.size(), Impl::kFewPairs), [&] {
     std::uint32_t first = 0;
@@ -84,7 +85,8 @@ bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs,
       first += count;
     }
   });
-  impl.softBounces = static_cast<bool>(bounces);
+  impl.soft.bounces = static_cast<bool>(bounces);
+  impl.soft.strikes = static_cast<bool>(strikes);
   return !static_cast<bool>(misfit);
 }
 
@@ -96,7 +98,8 @@ void Space<S>::softPreStep(S dt) {
   const Settings<S>& settings = state_.settings;
   const S substep = dt / S(settings.substeps);
   const S perSubstep = reciprocal(max(substep, ratio<S>(1, 1 << 14)));
-  const S hertz = min(settings.contactHertz, perSubstep * ratio<S>(1, 4));
+  // Stiffer, a pile of boxes no longer comes to rest.
+  const S hertz = min(settings.contactHertz, perSubstep * ratio<S>(1, 6));
   soft.settings = {{makeSoftness(hertz, settings.contactDamping, substep),
                     makeSoftness(S(2) * hertz, settings.contactDamping, substep)},
                    substep,
@@ -208,9 +211,9 @@ void Space<S>::softSolve() {
   const auto run = [&](auto& solver) {
     bool solved = false;
     crew.during(crew.helpsWith(impl.solvedPairs.size(), Impl::kFewPairs), [&] {
-      solved = solver.run(crew);
+      solved = solver.run(soft.strikes, crew);
       if (!solved) return;
-      if (impl.softBounces) solver.bounce();
+      if (soft.bounces) solver.bounce();
       solver.store(state_.pairs, crew);
     });
     return solved;

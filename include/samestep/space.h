@@ -61,8 +61,8 @@ struct Settings {
   S collisionSlop = ratio<S>(1, 200);
   /// Sequential impulses: what is left of an overlap after one second, in [0, 1].
   S collisionBias = ratio<S>(1797010, 1000000000);
-  /// Soft step: how stiff contacts are, cycles per second; a quarter of the substep rate at the most.
-  S contactHertz{30};
+  /// Soft step: how stiff contacts are, cycles per second; a sixth of the substep rate at the most.
+  S contactHertz{39};
   /// Soft step: how strongly a contact's spring is damped; 1 is critical.
   S contactDamping{10};
   /// Soft step: the greatest speed at which an overlap is pushed apart, m/s.
