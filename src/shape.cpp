@@ -2,14 +2,38 @@
 #include <samestep/shape.h>
 
 #include <algorithm>
-#include <type_traits>
+#include <utility>
 
 #include "shape_geometry.h"
 
 namespace samestep {
 
-static_assert(std::is_trivially_copyable_v<Shape<Fixed>>);
-static_assert(std::has_unique_object_representations_v<Shape<Fixed>>, "padding would be copied as garbage");
+template <Scalar S>
+VertexList<S>& VertexList<S>::operator=(const VertexList& other) {
+  if (this == &other) return *this;
+  // Of fewer the rest is left: what a shape's count leaves out is never looked at.
+  makeRoom(other.room_);
+  const Vector<S>* from = other.data();
+  std::copy(from, from + other.room_, data());
+  return *this;
+}
+
+template <Scalar S>
+void VertexList<S>::makeRoom(int count) {
+  if (count <= room_) return;
+  Vector<S>* const more = new Vector<S>[static_cast<std::size_t>(count)]();
+  std::copy(data(), data() + room_, more);
+  delete[] many_;
+  many_ = more;
+  room_ = count;
+}
+
+template <Scalar S>
+void VertexList<S>::swap(VertexList& other) noexcept {
+  std::swap_ranges(few_, few_ + kFew, other.few_);
+  std::swap(many_, other.many_);
+  std::swap(room_, other.room_);
+}
 
 template <Scalar S>
 void Shape<S>::setMass(S mass) {
@@ -73,10 +97,12 @@ S Shape<S>::extent() const {
 template <Scalar S>
 void Shape<S>::setGeometry(ShapeType type, std::span<const Vector<S>> vertices, S radius,
                            const ShapeMassInfo<S>& massInfo) {
-  // Upwards, so that the vertices may be this shape's own.
-  std::size_t i = 0;
-  for (; i < vertices.size(); ++i) vertices_[i] = vertices[i];
-  for (; i < kMaxPolyVertices; ++i) vertices_[i] = Vector<S>();
+  // The vertices may be this shape's own: then there is room.
+  const int count = static_cast<int>(vertices.size());
+  vertices_.makeRoom(count);
+  Vector<S>* const to = vertices_.data();
+  for (int i = 0; i < vertices_.room(); ++i)
+    to[i] = i < count ? vertices[static_cast<std::size_t>(i)] : Vector<S>();
   type_ = type;
   count_ = static_cast<std::uint8_t>(vertices.size());
   radius_ = radius;
@@ -92,17 +118,23 @@ bool Shape<S>::surfaceWellFormed() const {
 
 template <Scalar S>
 bool Shape<S>::sameGeometry(const Shape& other) const {
+  const std::span<const Vector<S>> own = vertices(), others = other.vertices();
   return type_ == other.type_ && radius_ == other.radius_ && massInfo_ == other.massInfo_ &&
          count_ == other.count_ && count_ <= kMaxPolyVertices &&
-         std::equal(vertices_, vertices_ + count_, other.vertices_);
+         std::equal(own.begin(), own.end(), others.begin(), others.end());
+}
+
+template <Scalar S>
+bool Shape<S>::same(const Shape& other) const {
+  return sameGeometry(other) && elasticity_ == other.elasticity_ && friction_ == other.friction_ &&
+         surfaceVelocity_ == other.surfaceVelocity_ && userData_ == other.userData_ &&
+         owner_ == other.owner_ && body_ == other.body_ && id_ == other.id_ &&
+         collisionType_ == other.collisionType_ && filter_ == other.filter_ && sensor_ == other.sensor_;
 }
 
 template <Scalar S>
 bool Shape<S>::geometryWellFormed() const {
-  if (count_ < 1 || count_ > kMaxPolyVertices) return false;
-  for (int i = count_; i < kMaxPolyVertices; ++i) {
-    if (vertices_[i] != Vector<S>()) return false;
-  }
+  if (count_ < 1 || count_ > kMaxPolyVertices || count_ > vertices_.room()) return false;
   if (!massSupported(massInfo_.mass)) return false;
 
   const S limit(kMaxExtent);
@@ -114,10 +146,10 @@ bool Shape<S>::geometryWellFormed() const {
   if (!(radius_ >= S(0)) || !sizeSupported(core, radius_)) return false;
   switch (type_) {
     case ShapeType::circle:
-      return count_ == 1 && massInfo_ == circleMassInfo(massInfo_.mass, radius_, vertices_[0]);
+      return count_ == 1 && massInfo_ == circleMassInfo(massInfo_.mass, radius_, core[0]);
     case ShapeType::segment:
-      return count_ == 4 && vertices_[0] != vertices_[1] &&
-             massInfo_ == segmentMassInfo(massInfo_.mass, vertices_[0], vertices_[1], radius_);
+      return count_ == 4 && core[0] != core[1] &&
+             massInfo_ == segmentMassInfo(massInfo_.mass, core[0], core[1], radius_);
     case ShapeType::poly:
       return strictlyConvex(core) && massInfo_ == polyMassInfo(massInfo_.mass, core, radius_);
   }
@@ -229,6 +261,7 @@ BB<S> boundingBox(const Shape<S>& shape, const Transform<S>& pose) {
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
+template class VertexList<double>;
 template class Shape<double>;
 template int planeCount<double>(const Shape<double>&);
 template void prepare<double>(const Shape<double>&, PlacedShape<double>&);
@@ -236,12 +269,14 @@ template BB<double> place<double>(const Transform<double>&, PlacedShape<double>&
 template BB<double> place<double>(const Shape<double>&, const Transform<double>&, PlacedShape<double>&);
 template BB<double> boundingBox<double>(const Shape<double>&, const Transform<double>&);
 #endif
+template class VertexList<Fixed>;
 template class Shape<Fixed>;
 template int planeCount<Fixed>(const Shape<Fixed>&);
 template void prepare<Fixed>(const Shape<Fixed>&, PlacedShape<Fixed>&);
 template BB<Fixed> place<Fixed>(const Transform<Fixed>&, PlacedShape<Fixed>&);
 template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, PlacedShape<Fixed>&);
 template BB<Fixed> boundingBox<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&);
+template class VertexList<CheckedFixed>;
 template class Shape<CheckedFixed>;
 template int planeCount<CheckedFixed>(const Shape<CheckedFixed>&);
 template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, PlacedShape<CheckedFixed>&);

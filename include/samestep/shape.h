@@ -56,6 +56,40 @@ struct ShapeMassInfo {
   friend constexpr bool operator==(const ShapeMassInfo&, const ShapeMassInfo&) = default;
 };
 
+/// The places of a shape's vertices. A few stand in the list itself, which is enough for circles, segments,
+/// triangles and boxes; more take memory of their own, which no copy shares. Copying a list of as many or
+/// fewer into one takes no memory.
+template <Scalar S>
+class VertexList {
+ public:
+  static constexpr int kFew = 4;
+
+  VertexList() = default;
+  VertexList(const VertexList& other) { *this = other; }
+  VertexList(VertexList&& other) noexcept { swap(other); }
+  VertexList& operator=(const VertexList& other);
+  VertexList& operator=(VertexList&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~VertexList() { delete[] many_; }
+
+  /// Places that there are, at least kFew.
+  int room() const { return room_; }
+  /// Makes room for `count` vertices; what is there stays.
+  void makeRoom(int count);
+  const Vector<S>* data() const { return many_ == nullptr ? few_ : many_; }
+  Vector<S>* data() { return many_ == nullptr ? few_ : many_; }
+
+ private:
+  void swap(VertexList& other) noexcept;
+
+  Vector<S> few_[kFew];
+  Vector<S>* many_ = nullptr;
+  std::int32_t room_ = kFew;
+  std::int32_t unused_ = 0;  // Keeps the record free of padding.
+};
+
 template <Scalar S>
 class CircleShape;
 template <Scalar S>
@@ -156,13 +190,17 @@ class Shape {
 
   /// The geometry as stored. Circle: the centre. Segment: its ends, then the tangents towards its neighbours.
   /// Polygon: the vertices, counter-clockwise.
-  constexpr std::span<const Vector<S>> vertices() const { return {vertices_, count_}; }
+  std::span<const Vector<S>> vertices() const {
+    return {vertices_.data(), static_cast<std::size_t>(min<int>(count_, vertices_.room()))};
+  }
+  /// Of the canonical bytes, at most so many stand outside of the record.
+  static constexpr unsigned kBytesOutside = (kMaxPolyVertices - VertexList<S>::kFew) * sizeof(Vector<S>);
 
-  friend constexpr bool operator==(const Shape&, const Shape&) = default;
+  friend bool operator==(const Shape& a, const Shape& b) { return a.same(b); }
 
-  /// Visits every field that is state, in order, as visit(name, field). `Self` is Shape or const Shape. Past
-  /// the count the vertices are zero: a reader starts from a new Shape. The owner is no state: it names a
-  /// Space of this process; nor is the id, which says in which slot of the state the shape is.
+  /// Visits every field that is state, in order, as visit(name, field). `Self` is Shape or const Shape. The
+  /// owner is no state: it names a Space of this process; nor is the id, which says in which slot of the
+  /// state the shape is.
   template <class Self, class Visit>
   static constexpr void fields(Self& self, Visit&& visit) {
     visit("type", self.type_);
@@ -182,7 +220,9 @@ class Shape {
     visit("centroid", self.massInfo_.centroid);
     visit("unitMoment", self.massInfo_.unitMoment);
     visit("area", self.massInfo_.area);
-    for (int i = 0; i < min<int>(self.count_, kMaxPolyVertices); ++i) visit("vertex", self.vertices_[i]);
+    if constexpr (!std::is_const_v<Self>) self.vertices_.makeRoom(min<int>(self.count_, kMaxPolyVertices));
+    const int count = min<int>(self.count_, min(self.vertices_.room(), kMaxPolyVertices));
+    for (int i = 0; i < count; ++i) visit("vertex", self.vertices_.data()[i]);
   }
 
   /// Whether the record could have been made by the functions of this library, the ids and the surface apart:
@@ -199,6 +239,7 @@ class Shape {
   friend class SegmentShape<S>;
   friend class PolyShape<S>;
 
+  bool same(const Shape& other) const;
   void setGeometry(ShapeType type, std::span<const Vector<S>> vertices, S radius,
                    const ShapeMassInfo<S>& massInfo);
 
@@ -218,7 +259,7 @@ class Shape {
   ShapeType type_ = ShapeType::circle;
   std::uint8_t sensor_ = 0;
   std::uint8_t count_ = 1;
-  Vector<S> vertices_[kMaxPolyVertices];
+  VertexList<S> vertices_;
 };
 
 /// A point and a unit vector: of a polygon, a vertex and the outward normal of the edge that ends there.
