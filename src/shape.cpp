@@ -158,7 +158,7 @@ bool Shape<S>::geometryWellFormed() const {
 
 namespace {
 
-/// Segment: how many planes each half holds.
+/// Of a segment.
 constexpr int kSegmentPlanes = 3;
 
 template <Scalar S>
@@ -196,32 +196,33 @@ template <Scalar S>
 int planeCount(const Shape<S>& shape) {
   switch (shape.type()) {
     case ShapeType::circle:
-      return 0;
+      return 1;
     case ShapeType::segment:
-      return 2 * kSegmentPlanes;
+      return kSegmentPlanes;
     case ShapeType::poly:
-      return 2 * static_cast<int>(shape.vertices().size());
+      return static_cast<int>(shape.vertices().size());
   }
   return 0;
 }
 
 template <Scalar S>
-void prepare(const Shape<S>& shape, PlacedShape<S>& out) {
+void prepare(const Shape<S>& shape, Plane<S>* local, PlacedShape<S>& out) {
   const std::span<const Vector<S>> v = shape.vertices();
+  out.local = local;
   out.type = shape.type();
   out.radius = shape.radius();
   switch (shape.type()) {
     case ShapeType::circle:
       out.count = 1;
-      out.center.n = v[0];
+      local[0] = {v[0], Vector<S>()};
       break;
     case ShapeType::segment:
       out.count = 2;
-      prepareSegment(v, out.planes + kSegmentPlanes);
+      prepareSegment(v, local);
       break;
     case ShapeType::poly:
       out.count = static_cast<std::uint8_t>(v.size());
-      preparePoly(v, out.planes + v.size());
+      preparePoly(v, local);
       break;
   }
 }
@@ -231,27 +232,27 @@ BB<S> place(const Transform<S>& pose, PlacedShape<S>& placed) {
   BB<S> core;
   switch (placed.type) {
     case ShapeType::circle: {
-      const Vector<S> c = transformPoint(pose, placed.center.n);
-      placed.center.v0 = c;
+      const Vector<S> c = transformPoint(pose, placed.local[0].v0);
+      placed.planes[0] = {c, Vector<S>()};
       core = BB<S>(c.x, c.y, c.x, c.y);
       break;
     }
     case ShapeType::segment: {
-      const Plane<S>* local = placed.planes + kSegmentPlanes;
+      const Plane<S>* local = placed.local;
       core = movePlanes(pose, local, placed.planes, 2);
       placed.planes[2] = {transformVect(pose, local[2].v0), transformVect(pose, local[2].n)};
       break;
     }
     case ShapeType::poly:
-      core = movePlanes(pose, placed.planes + placed.count, placed.planes, placed.count);
+      core = movePlanes(pose, placed.local, placed.planes, placed.count);
       break;
   }
   return placed.box = inflate(core, placed.radius);
 }
 
 template <Scalar S>
-BB<S> place(const Shape<S>& shape, const Transform<S>& pose, PlacedShape<S>& out) {
-  prepare(shape, out);
+BB<S> place(const Shape<S>& shape, const Transform<S>& pose, Plane<S>* local, PlacedShape<S>& out) {
+  prepare(shape, local, out);
   return place(pose, out);
 }
 
@@ -264,25 +265,28 @@ BB<S> boundingBox(const Shape<S>& shape, const Transform<S>& pose) {
 template class VertexList<double>;
 template class Shape<double>;
 template int planeCount<double>(const Shape<double>&);
-template void prepare<double>(const Shape<double>&, PlacedShape<double>&);
+template void prepare<double>(const Shape<double>&, Plane<double>*, PlacedShape<double>&);
 template BB<double> place<double>(const Transform<double>&, PlacedShape<double>&);
-template BB<double> place<double>(const Shape<double>&, const Transform<double>&, PlacedShape<double>&);
+template BB<double> place<double>(const Shape<double>&, const Transform<double>&, Plane<double>*,
+                                  PlacedShape<double>&);
 template BB<double> boundingBox<double>(const Shape<double>&, const Transform<double>&);
 #endif
 template class VertexList<Fixed>;
 template class Shape<Fixed>;
 template int planeCount<Fixed>(const Shape<Fixed>&);
-template void prepare<Fixed>(const Shape<Fixed>&, PlacedShape<Fixed>&);
+template void prepare<Fixed>(const Shape<Fixed>&, Plane<Fixed>*, PlacedShape<Fixed>&);
 template BB<Fixed> place<Fixed>(const Transform<Fixed>&, PlacedShape<Fixed>&);
-template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, PlacedShape<Fixed>&);
+template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, Plane<Fixed>*,
+                                PlacedShape<Fixed>&);
 template BB<Fixed> boundingBox<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&);
 template class VertexList<CheckedFixed>;
 template class Shape<CheckedFixed>;
 template int planeCount<CheckedFixed>(const Shape<CheckedFixed>&);
-template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, PlacedShape<CheckedFixed>&);
+template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, Plane<CheckedFixed>*,
+                                    PlacedShape<CheckedFixed>&);
 template BB<CheckedFixed> place<CheckedFixed>(const Transform<CheckedFixed>&, PlacedShape<CheckedFixed>&);
 template BB<CheckedFixed> place<CheckedFixed>(const Shape<CheckedFixed>&, const Transform<CheckedFixed>&,
-                                              PlacedShape<CheckedFixed>&);
+                                              Plane<CheckedFixed>*, PlacedShape<CheckedFixed>&);
 template BB<CheckedFixed> boundingBox<CheckedFixed>(const Shape<CheckedFixed>&,
                                                     const Transform<CheckedFixed>&);
 

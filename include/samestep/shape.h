@@ -272,24 +272,29 @@ struct Plane {
 /// The geometry of one shape where its body stands: what collide and the queries read. A cache, made from the
 /// shape by prepare and moved by place.
 template <Scalar S>
-struct PlacedShape {
-  BB<S> box;        ///< The smallest box around the shape, rounding included.
-  Plane<S> center;  ///< Circle: v0 is its centre in the world, n is where the body holds it.
-  /// Room for planeCount(shape) planes, given by the owner of the PlacedShape; the first half is the world's,
-  /// the second half the body's. Polygon: its planes. Segment: {a, -n}, {b, n}, {tangent at a, tangent at b}.
+struct alignas(64) PlacedShape {
+  BB<S> box;  ///< The smallest box around the shape, rounding included.
+  /// Room for planeCount(shape) planes, given by the owner of the PlacedShape, in the world. Polygon: its
+  /// planes. Segment: {a, -n}, {b, n}, {tangent at a, tangent at b}. Circle: v0 is its centre.
   Plane<S>* planes = nullptr;
+  /// The same planes where the body holds them; shapes of one geometry may share them.
+  const Plane<S>* local = nullptr;
   S radius{};
   ShapeType type = ShapeType::circle;
   std::uint8_t count = 1;  ///< Vertices: circle 1, segment 2.
+
+  /// Of a circle, in the world.
+  const Vector<S>& center() const { return planes[0].v0; }
 };
 
-/// How many planes a PlacedShape of this shape needs: 0 for a circle, at most 2 kMaxPolyVertices.
+/// How many planes a PlacedShape of this shape needs: at most kMaxPolyVertices.
 template <Scalar S>
 int planeCount(const Shape<S>& shape);
 
-/// Writes all that does not depend on the pose. `out.planes` must be set; call again when the shape changed.
+/// Writes what does not depend on the pose, and its planes as the body holds them to `local`, with room for
+/// planeCount(shape). `out.planes` must be set; call again when the shape changed.
 template <Scalar S>
-void prepare(const Shape<S>& shape, PlacedShape<S>& out);
+void prepare(const Shape<S>& shape, Plane<S>* local, PlacedShape<S>& out);
 
 /// Moves a prepared shape to where a rigid `pose` puts it and returns its new box. MIS: shapeUpdate
 template <Scalar S>
@@ -297,7 +302,7 @@ BB<S> place(const Transform<S>& pose, PlacedShape<S>& placed);
 
 /// Both: prepare, then place. MIS: shapeCacheBB
 template <Scalar S>
-BB<S> place(const Shape<S>& shape, const Transform<S>& pose, PlacedShape<S>& out);
+BB<S> place(const Shape<S>& shape, const Transform<S>& pose, Plane<S>* local, PlacedShape<S>& out);
 
 /// A placed shape with its own room: for a single test, where no Space keeps the planes.
 template <Scalar S>
@@ -305,7 +310,7 @@ class Placement {
  public:
   Placement(const Shape<S>& shape, const Transform<S>& pose) {
     placed_.planes = planes_;
-    place(shape, pose, placed_);
+    place(shape, pose, local_, placed_);
   }
   Placement(const Placement&) = delete;
   Placement& operator=(const Placement&) = delete;
@@ -314,7 +319,7 @@ class Placement {
   const PlacedShape<S>* operator->() const { return &placed_; }
 
  private:
-  Plane<S> planes_[2 * kMaxPolyVertices];
+  Plane<S> planes_[kMaxPolyVertices], local_[kMaxPolyVertices];
   PlacedShape<S> placed_;
 };
 
@@ -354,9 +359,9 @@ SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a
 #ifndef SAMESTEP_FIXED_ONLY
 extern template class Shape<double>;
 extern template int planeCount<double>(const Shape<double>&);
-extern template void prepare<double>(const Shape<double>&, PlacedShape<double>&);
+extern template void prepare<double>(const Shape<double>&, Plane<double>*, PlacedShape<double>&);
 extern template BB<double> place<double>(const Transform<double>&, PlacedShape<double>&);
-extern template BB<double> place<double>(const Shape<double>&, const Transform<double>&,
+extern template BB<double> place<double>(const Shape<double>&, const Transform<double>&, Plane<double>*,
                                          PlacedShape<double>&);
 extern template BB<double> boundingBox<double>(const Shape<double>&, const Transform<double>&);
 extern template PointQueryInfo<double> pointQuery<double>(const PlacedShape<double>&, const Vector<double>&);
@@ -366,20 +371,22 @@ extern template SegmentQueryInfo<double> segmentQuery<double>(const PlacedShape<
 #endif
 extern template class Shape<Fixed>;
 extern template int planeCount<Fixed>(const Shape<Fixed>&);
-extern template void prepare<Fixed>(const Shape<Fixed>&, PlacedShape<Fixed>&);
+extern template void prepare<Fixed>(const Shape<Fixed>&, Plane<Fixed>*, PlacedShape<Fixed>&);
 extern template BB<Fixed> place<Fixed>(const Transform<Fixed>&, PlacedShape<Fixed>&);
-extern template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, PlacedShape<Fixed>&);
+extern template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, Plane<Fixed>*,
+                                       PlacedShape<Fixed>&);
 extern template BB<Fixed> boundingBox<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&);
 extern template PointQueryInfo<Fixed> pointQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&);
 extern template SegmentQueryInfo<Fixed> segmentQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&,
                                                             const Vector<Fixed>&, Fixed);
 extern template class Shape<CheckedFixed>;
 extern template int planeCount<CheckedFixed>(const Shape<CheckedFixed>&);
-extern template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, PlacedShape<CheckedFixed>&);
+extern template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, Plane<CheckedFixed>*,
+                                           PlacedShape<CheckedFixed>&);
 extern template BB<CheckedFixed> place<CheckedFixed>(const Transform<CheckedFixed>&,
                                                      PlacedShape<CheckedFixed>&);
 extern template BB<CheckedFixed> place<CheckedFixed>(const Shape<CheckedFixed>&,
-                                                     const Transform<CheckedFixed>&,
+                                                     const Transform<CheckedFixed>&, Plane<CheckedFixed>*,
                                                      PlacedShape<CheckedFixed>&);
 extern template BB<CheckedFixed> boundingBox<CheckedFixed>(const Shape<CheckedFixed>&,
                                                            const Transform<CheckedFixed>&);

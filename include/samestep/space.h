@@ -612,7 +612,7 @@ class Space {
   /// Places the shapes of what moved anew. MIS: shapeUpdateFunc
   void updateShapes();
   void findPairs();
-  void mergeNewPairs();
+  void movePairs(std::uint32_t count);
   void collidePairs();
   bool collidePairs(std::uint32_t begin, std::uint32_t end, bool surfacesKnown, CollisionStats& stats);
   /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
