@@ -171,7 +171,9 @@ struct Space<S>::Impl : SpaceCache<S> {
   std::vector<std::uint32_t> groupOrder;
   std::vector<std::uint32_t> solverIndex;
   std::vector<std::uint32_t> solverBodies;
+  // Of each pair: whether its boxes overlap; whether it touched before and does not now.
   std::vector<std::uint8_t> overlapping;
+  std::vector<std::uint8_t> left;
   struct NewPair {
     std::uint32_t to;
     std::uint32_t a, b;

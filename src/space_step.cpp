@@ -289,6 +289,7 @@ void Space<S>::collidePairs() {
   const bool surfacesKnown = impl.surfacesKnown;
   impl.surfacesKnown = false;
   impl.someLeft = false;
+  impl.left.resize(count);
   // Handlers are asked in order, and see the pairs before theirs updated, those after it not.
   if (!crew.helpsWith(count, Impl::kFewPairs) || !state_.handlers.empty()) {
     impl.someLeft = collidePairs(0, count, surfacesKnown, collisionStats_);
@@ -321,7 +322,7 @@ void Space<S>::collidePairs() {
 template <Scalar S>
 bool Space<S>::collidePairs(std::uint32_t begin, std::uint32_t end, bool surfacesKnown,
                             CollisionStats& stats) {
-  const Impl& impl = *impl_;
+  Impl& impl = *impl_;
   bool someLeft = false;
   for (std::uint32_t i = begin; i < end; ++i) {
     Pair<S>& pair = state_.pairs[i];
@@ -329,7 +330,9 @@ bool Space<S>::collidePairs(std::uint32_t begin, std::uint32_t end, bool surface
     pair.solved = 0;
     if (pair.state != ArbiterState::apart && pair.age != 0xffffffffu) ++pair.age;
     if (impl.overlapping[i] != 0) collidePair(pair, surfacesKnown, stats);
-    if (pair.state != ArbiterState::apart && pair.age != 0) someLeft = true;
+    const bool left = pair.state != ArbiterState::apart && pair.age != 0;
+    impl.left[i] = left ? 1 : 0;
+    someLeft |= left;
   }
   return someLeft;
 }
@@ -410,10 +413,11 @@ bool Space<S>::rests(const Pair<S>& pair) const {
 template <Scalar S>
 void Space<S>::expirePairs() {
   Impl& impl = *impl_;
-  bool dropped = false;
+  std::size_t firstDropped = state_.pairs.size();
   for (std::size_t i = 0; impl.someLeft && i < state_.pairs.size(); ++i) {
+    if (impl.left[i] == 0) continue;
     Pair<S>& pair = state_.pairs[i];
-    if (pair.state == ArbiterState::apart || pair.age == 0 || rests(pair)) continue;
+    if (rests(pair)) continue;
     if (pair.state != ArbiterState::cached) {
       pair.state = ArbiterState::cached;
       callSeparate(pair, false);
@@ -428,12 +432,12 @@ void Space<S>::expirePairs() {
     } else {
       pair.state = ArbiterState::apart;
       pair.age = 0;
-      dropped = true;
+      firstDropped = min(firstDropped, i);
     }
   }
-  if (dropped) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
+  if (firstDropped != state_.pairs.size()) {
+    std::size_t kept = firstDropped;
+    for (std::size_t i = firstDropped; i < state_.pairs.size(); ++i) {
       if (state_.pairs[i].state == ArbiterState::apart && impl.overlapping[i] == 0) continue;
       if (kept != i) state_.pairs[kept] = state_.pairs[i];
       ++kept;

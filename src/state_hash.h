@@ -6,14 +6,18 @@
 
 #include <cstdint>
 
+#include <samestep/kernel.h>
+
 #include "canonical.h"
+#include "hash_update.h"
 
 namespace samestep {
 
 /// Hashes records: XXH3-64 of their canonical bytes, the same value on every machine.
 class HashSink {
  public:
-  HashSink();
+  /// @param target  whose instructions are used, if it is available: no hash depends on it
+  explicit HashSink(KernelTarget target = KernelTarget::best);
 
   template <class T>
   [[gnu::flatten]] void put(const T& record) {
@@ -51,6 +55,7 @@ class HashSink {
   void flush();
 
   XXH3_state_t state_;
+  HashUpdate update_;
   unsigned used_ = 0;
   alignas(64) std::uint8_t chunk_[kChunk];
 };

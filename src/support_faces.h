@@ -61,10 +61,10 @@ FaceAxis<S> separationAt(const PlacedShape<S>& shape, int face, const PlacedShap
   int nearest = 0;
   for (int i = 1; i < other.count; ++i) {
     const typename Way::Number next = along(i);
-    if (next < least) {
-      least = next;
-      nearest = i;
-    }
+    // Which one it is cannot be guessed.
+    const bool nearer = next < least;
+    nearest += (i - nearest) & -static_cast<int>(nearer);
+    least = nearer ? next : least;
   }
   return {toScalar(exactDot(other.planes[nearest].v0 - plane.v0, plane.n)), face, nearest, onB};
 }
