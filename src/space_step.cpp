@@ -371,8 +371,10 @@ void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown, CollisionStats& st
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
   }
   pair.age = 0;
-  if (!same || !surfacesKnown || shapeA.surface.velocity != shapeB.surface.velocity) {
-    takeSurfaces(pair, shapeA.surface, shapeB.surface, rotate(pair.localNormal, bodyA.frame.rotation));
+  const bool belt = shapeA.surface.velocity != shapeB.surface.velocity;
+  if (!same || !surfacesKnown || belt) {
+    const Vector<S> normal = belt ? rotate(pair.localNormal, bodyA.frame.rotation) : Vector<S>();
+    takeSurfaces(pair, shapeA.surface, shapeB.surface, normal);
   }
   const bool wanted = applyCollision(pair);
   const bool moves = bodyA.type == BodyType::dynamicBody || bodyB.type == BodyType::dynamicBody;

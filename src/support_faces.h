@@ -97,11 +97,16 @@ inline constexpr int kMaxFacePairs = 64;
 template <class Way, Scalar S>
 FaceAxis<S> searchFaces(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, std::uint32_t start) {
   using Axis = FaceAxis<S>;
+  const auto axisOf = [&](int face, bool onB) {
+    return onB ? separationAt<Way>(b, face, a, true) : separationAt<Way>(a, face, b, false);
+  };
+  Axis old;
+  old.face = -1;
   if ((start & Axis::kTag) != 0) {
     const bool onB = (start & Axis::kOnB) != 0;
     const int face = static_cast<int>(start & Axis::kFace);
     if (face < (onB ? b : a).count) {
-      const Axis old = onB ? separationAt<Way>(b, face, a, true) : separationAt<Way>(a, face, b, false);
+      old = axisOf(face, onB);
       if (old.separation > reach) return old;
     }
   }
@@ -114,7 +119,8 @@ FaceAxis<S> searchFaces(const PlacedShape<S>& a, const PlacedShape<S>& b, S reac
   // Of two faces that lie flat on each other it is A's, whatever rounding makes of it: the answer stays the
   // same from step to step, and a segment is touched in its face, not at its end.
   const bool onB = faceOfB.separation > faceOfA.separation + Way::length(kFlat<S>);
-  return onB ? separationAt<Way>(b, faceOfB.face, a, true) : separationAt<Way>(a, faceOfA.face, b, false);
+  const int face = onB ? faceOfB.face : faceOfA.face;
+  return face == old.face && onB == old.onB ? old : axisOf(face, onB);
 }
 
 /// The best of all faces, or the one looked at first if that one separates the shapes by more than `reach`.
