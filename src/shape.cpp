@@ -178,6 +178,35 @@ void preparePoly(std::span<const Vector<S>> v, Plane<S>* local) {
   }
 }
 
+/// Whether the second half of the planes is the first turned by 180 degrees, as those of a box around its
+/// body's origin, and stays so bit by bit however it is turned: where zero has no sign.
+template <Scalar S>
+bool halves([[maybe_unused]] const Plane<S>* local, [[maybe_unused]] std::size_t count) {
+  if constexpr (FixedNumber<S>) {
+    const std::size_t half = count / 2;
+    for (std::size_t i = 0; i < half; ++i) {
+      if (local[half + i].v0 != -local[i].v0 || local[half + i].n != -local[i].n) return false;
+    }
+    return count % 2 == 0;
+  }
+  return false;
+}
+
+/// movePlanes for such planes.
+template <Scalar S>
+BB<S> moveHalves(const Transform<S>& pose, const Plane<S>* local, Plane<S>* world, int count) {
+  const Vector<S> origin(pose.tx, pose.ty);
+  const int half = count / 2;
+  Vector<S> reach;
+  for (int i = 0; i < half; ++i) {
+    const Vector<S> v = transformVect(pose, local[i].v0), n = transformVect(pose, local[i].n);
+    world[i] = {origin + v, n};
+    world[half + i] = {origin - v, -n};
+    reach = {max(reach.x, abs(v.x)), max(reach.y, abs(v.y))};
+  }
+  return {origin.x - reach.x, origin.y - reach.y, origin.x + reach.x, origin.y + reach.y};
+}
+
 /// Moves vertices and normals, and returns the box around the vertices.
 template <Scalar S>
 BB<S> movePlanes(const Transform<S>& pose, const Plane<S>* local, Plane<S>* world, int count) {
@@ -223,6 +252,7 @@ void prepare(const Shape<S>& shape, Plane<S>* local, PlacedShape<S>& out) {
     case ShapeType::poly:
       out.count = static_cast<std::uint8_t>(v.size());
       preparePoly(v, local);
+      out.halved = halves(local, v.size());
       break;
   }
 }
@@ -244,7 +274,8 @@ BB<S> place(const Transform<S>& pose, PlacedShape<S>& placed) {
       break;
     }
     case ShapeType::poly:
-      core = movePlanes(pose, placed.local, placed.planes, placed.count);
+      core = placed.halved ? moveHalves(pose, placed.local, placed.planes, placed.count)
+                           : movePlanes(pose, placed.local, placed.planes, placed.count);
       break;
   }
   return placed.box = inflate(core, placed.radius);

@@ -245,6 +245,25 @@ TYPED_TEST(ShapeTest, PreparedShapeIsMovedAgainWithoutTheShape) {
   }
 }
 
+// Of a box around its origin half the planes are computed.
+TYPED_TEST(ShapeTest, EachPlaneOfABoxIsMovedByThePoseToTheLastBit) {
+  using S = TypeParam;
+  Random random(11);
+  for (int round = 0; round < 200; ++round) {
+    const Shape<S> shape = boxShape<S>(BodyId(), random.number<S>(1, 4), random.number<S>(1, 4));
+    const Transform<S> pose = Transform<S>::rigid({random.number<S>(-100, 100), random.number<S>(-100, 100)},
+                                                  random.number<S>(-4, 4));
+    const Placement<S> box(shape, pose);
+    BB<S> around(box->planes[0].v0.x, box->planes[0].v0.y, box->planes[0].v0.x, box->planes[0].v0.y);
+    for (int i = 0; i < box->count; ++i) {
+      EXPECT_EQ(box->planes[i].v0, transformPoint(pose, shape.vertices()[static_cast<std::size_t>(i)]));
+      EXPECT_EQ(box->planes[i].n, transformVect(pose, box->local[i].n));
+      around = expand(around, box->planes[i].v0);
+    }
+    EXPECT_EQ(box->box, around);
+  }
+}
+
 TYPED_TEST(ShapeTest, PlaneCountIsWhatEachTypeNeeds) {
   using S = TypeParam;
   EXPECT_EQ(planeCount(circleShape<S>(BodyId(), S(1))), 1);

@@ -282,6 +282,8 @@ struct alignas(64) PlacedShape {
   S radius{};
   ShapeType type = ShapeType::circle;
   std::uint8_t count = 1;  ///< Vertices: circle 1, segment 2.
+  /// Whether the second half of the local planes is the first half turned by 180 degrees.
+  bool halved = false;
 
   /// Of a circle, in the world.
   const Vector<S>& center() const { return planes[0].v0; }
