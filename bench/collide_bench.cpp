@@ -158,10 +158,10 @@ BENCHMARK(collideOurs<Fixed>)->Apply(oursKinds);
 
 template <Scalar S>
 void placeBoxes(benchmark::State& state) {
-  Plane<S> planes[8];
+  Plane<S> planes[4], local[4];
   PlacedShape<S> placed;
   placed.planes = planes;
-  prepare(boxShape<S>(BodyId(), S(1), S(1)), placed);
+  prepare(boxShape<S>(BodyId(), S(1), S(1)), local, placed);
   Transform<S> pose = Transform<S>::rigid({S(3), S(4)}, ratio<S>(1, 3));
   for (auto _ : state) {
     benchmark::DoNotOptimize(pose);

@@ -81,7 +81,7 @@ class Placed {
 
   void prepare(const Shape<S>& shape) {
     placed_.planes = planes_;
-    samestep::prepare(shape, placed_);
+    samestep::prepare(shape, local_, placed_);
   }
   const PlacedShape<S>& at(const Transform<S>& pose) {
     place(pose, placed_);
@@ -90,7 +90,7 @@ class Placed {
   const PlacedShape<S>& operator*() const { return placed_; }
 
  private:
-  Plane<S> planes_[2 * kMaxPolyVertices];
+  Plane<S> planes_[kMaxPolyVertices], local_[kMaxPolyVertices];
   PlacedShape<S> placed_;
 };
 

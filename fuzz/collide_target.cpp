@@ -314,7 +314,7 @@ void snap(Scene<Fixed>& scene, std::uint64_t how) {
   const PlacedShape<Fixed>&a = scene.a.at(transformOf<Fixed>(current.poseA)),
         &b = scene.b.at(transformOf<Fixed>(current.poseB));
   const auto vertex = [](const PlacedShape<Fixed>& shape, int i) {
-    return shape.type == ShapeType::circle ? shape.center.v0 : shape.planes[i % shape.count].v0;
+    return shape.planes[i % shape.count].v0;
   };
   const int i = byteOf(how, 0), j = byteOf(how, 1);
   Vector<Fixed> goal = vertex(a, i);

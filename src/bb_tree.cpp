@@ -87,14 +87,14 @@ void BBTree<S>::setMargin(S margin) {
   }
 }
 
-// As Chipmunk's cpBBTree GetBB: a tenth of the size on each side, or a tenth of a second of motion where that
-// is more.
+// As Chipmunk's cpBBTree GetBB, which has a tenth of the size and a tenth of a second: with less the leaves
+// of what moves are placed anew too often, with more there are too many candidates.
 template <Scalar S>
 void BBTree<S>::placeMoving(IndexKey key, const BB<S>& tight, const Vector<S>& velocity) {
-  const S tenth = ratio<S>(1, 10);
-  const S x = (tight.right - tight.left) * tenth;
-  const S y = (tight.top - tight.bottom) * tenth;
-  const Vector<S> ahead = velocity * tenth;
+  constexpr S kPartOfSize = ratio<S>(1, 7), kSeconds = ratio<S>(1, 5);
+  const S x = (tight.right - tight.left) * kPartOfSize;
+  const S y = (tight.top - tight.bottom) * kPartOfSize;
+  const Vector<S> ahead = velocity * kSeconds;
   place(key, {tight.left + min(-x, ahead.x), tight.bottom + min(-y, ahead.y), tight.right + max(x, ahead.x),
               tight.top + max(y, ahead.y)});
 }

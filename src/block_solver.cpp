@@ -260,9 +260,7 @@ void BlockSolver<S, N>::give(std::uint32_t body, S x, S y, S turn) {
 
 template <Scalar S, class N>
 void BlockSolver<S, N>::give(std::uint32_t body, std::int64_t x, std::int64_t y, std::int64_t turn,
-                             std::int64_t& misfit)
-requires BlockSolver<S, N>::kIntegers
-{
+                             std::int64_t& misfit) requires BlockSolver<S, N>::kIntegers {
   Speed* const base = drives_[body].base;
   const std::int64_t given[3] = {x, y, turn};
   for (int k = 0; k < 3; ++k) {
@@ -329,8 +327,8 @@ void BlockSolver<S, N>::setFriction(Block& block, int lane, S friction) {
       for (int i = 0; i < lane; ++i) block.friction[i] >>= whole - block.frictionShift;
       block.frictionShift = static_cast<std::uint8_t>(whole);
     }
-    block.friction[lane] = static_cast<std::int32_t>(
-        min(units::shifted(most.raw(), 32 - N::kFrictionBits + block.frictionShift), std::int64_t{0x7fffffff}));
+    block.friction[lane] = static_cast<std::int32_t>(min(
+        units::shifted(most.raw(), 32 - N::kFrictionBits + block.frictionShift), std::int64_t{0x7fffffff}));
   } else if constexpr (kIntegers) {
     // Held at 511: hardly anything slips at a tenth of it.
     block.friction[lane] =
@@ -385,8 +383,8 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
     for (int i = 0; i < pair.count; ++i) {
       const Contact<S>& contact = pair.contacts[i];
       auto& point = block.point[i];
-      const auto fill = [&](auto& axis, std::int32_t armA, std::int32_t armB,
-                            typename N::Sum kept) __attribute__((always_inline)) {
+      const auto fill = [&](auto& axis, std::int32_t armA, std::int32_t armB, typename N::Sum kept)
+          __attribute__((always_inline)) {
         axis.armA[lane] = armA;
         axis.armB[lane] = armB;
         axis.spinA[lane] = sideA.spin(armA, misfit);
@@ -396,8 +394,8 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
             (std::int64_t{1} << N::kUnitBits) +
             ((std::int64_t{axis.spinA[lane]} * armA + std::int64_t{axis.spinB[lane]} * armB) >> N::kSpinBits);
         constexpr std::uint64_t one = std::uint64_t{1} << (2 * N::kUnitBits);
-        axis.mass[lane] =
-            static_cast<std::int32_t>((one + static_cast<std::uint64_t>(k) / 2) / static_cast<std::uint64_t>(k));
+        axis.mass[lane] = static_cast<std::int32_t>((one + static_cast<std::uint64_t>(k) / 2) /
+                                                    static_cast<std::uint64_t>(k));
         axis.sum[lane] = kept;
         turnA += impulseBy<N, N::kSpinBits>(axis.spinA[lane], kept);
         turnB += impulseBy<N, N::kSpinBits>(axis.spinB[lane], kept);
@@ -405,8 +403,7 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
       };
       const auto placeA = sideA.place(contact.anchorA);
       const auto placeB = sideB.place(contact.anchorB);
-      const auto normalKept =
-          units_.sum(clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>), misfit);
+      const auto normalKept = units_.sum(clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>), misfit);
       const auto tangentKept =
           units_.sum(clamp(keptSum(contact.tangentSpeed), -kMaxSum<S>, kMaxSum<S>), misfit);
       fill(point.normal, placeA.across, placeB.across, normalKept);
@@ -424,7 +421,9 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
                        misfit);
       }
     }
-    const auto along = [&](std::int32_t by, std::int64_t part) { return impulseBy<N, N::kUnitBits>(by, part); };
+    const auto along = [&](std::int32_t by, std::int64_t part) {
+      return impulseBy<N, N::kUnitBits>(by, part);
+    };
     const std::int64_t x = along(block.normalX[lane], normalPart) - along(block.normalY[lane], tangentPart);
     const std::int64_t y = along(block.normalY[lane], normalPart) + along(block.normalX[lane], tangentPart);
     if (a.isDynamic()) give(indexA, along(share, x), along(share, y), turnA, misfit);
@@ -516,7 +515,8 @@ template <Scalar S, class N>
 std::uint64_t BlockSolver<S, N>::integrateVelocities(std::uint32_t begin, std::uint32_t end) {
   std::uint64_t left = 0;
   const auto hold = [&](std::uint32_t body, int k) {
-    held_[body] = static_cast<std::uint8_t>(held_[body] | (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
+    held_[body] =
+        static_cast<std::uint8_t>(held_[body] | (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
   };
   if constexpr (std::same_as<N, FastNumbers>) {
     constexpr std::int64_t kMost = N::kRange - 1;
@@ -571,8 +571,7 @@ template <Scalar S, class N>
 std::uint64_t BlockSolver<S, N>::integratePositions(std::uint32_t begin, std::uint32_t end) {
   std::uint64_t left = 0;
   if constexpr (std::same_as<N, FastNumbers>) {
-    const std::int64_t substep =
-        units::shifted(settings_->substep.raw(), 32 - units_.finer() - N::kUnitBits);
+    const std::int64_t substep = units::shifted(settings_->substep.raw(), 32 - units_.finer() - N::kUnitBits);
     for (std::uint32_t i = begin; i < end; ++i) {
       SoftBody<N>& body = bodies_[i];
       for (int k = 0; k < 3; ++k) {
@@ -582,9 +581,9 @@ std::uint64_t BlockSolver<S, N>::integratePositions(std::uint32_t begin, std::ui
       }
       // Half the square of the angle, as a way at the radius.
       const int perRadius = units_.wayBits() + units_.radius((*starts_)[i].radiusBits);
-      const std::int64_t bend =
-          units::shifted(std::int64_t{body.moved[2]} * body.moved[2], perRadius + 1);
-      body.moved[3] = static_cast<Speed>(min(bend, min(units::shifted(1, 3 - perRadius), std::int64_t{N::kRange / 2 - 1})));
+      const std::int64_t bend = units::shifted(std::int64_t{body.moved[2]} * body.moved[2], perRadius + 1);
+      body.moved[3] = static_cast<Speed>(
+          min(bend, min(units::shifted(1, 3 - perRadius), std::int64_t{N::kRange / 2 - 1})));
     }
   } else {
     const S half = ratio<S>(1, 2);
@@ -594,8 +593,8 @@ std::uint64_t BlockSolver<S, N>::integratePositions(std::uint32_t begin, std::ui
     for (std::uint32_t i = begin; i < end; ++i) {
       SoftBody<N>& body = bodies_[i];
       for (int k = 0; k < 3; ++k) {
-        body.moved[k] = asSpeed<Speed>(
-            mulAdd(asScalar<S>(body.velocity[k]), substep, asScalar<S>(body.moved[k])));
+        body.moved[k] =
+            asSpeed<Speed>(mulAdd(asScalar<S>(body.velocity[k]), substep, asScalar<S>(body.moved[k])));
       }
       if constexpr (std::same_as<N, WideNumbers>) {
         const int perRadius = units_.finer() + units_.radius((*starts_)[i].radiusBits);
@@ -673,7 +672,8 @@ void BlockSolver<S, N>::bounce() {
         };
         const auto spin = [&](bool ofB) {
           if constexpr (N::kStoresSpins) {
-            return ofB ? units_.fromSpin(axis.spinB[lane], radiusB) : units_.fromSpin(axis.spinA[lane], radiusA);
+            return ofB ? units_.fromSpin(axis.spinB[lane], radiusB)
+                       : units_.fromSpin(axis.spinA[lane], radiusA);
           } else {
             return ofB ? block.moments.momentB[lane] * axis.armB[lane]
                        : block.moments.momentA[lane] * axis.armA[lane];

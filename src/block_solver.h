@@ -25,8 +25,8 @@ class BlockSolver {
 
   /// @param target  one that is available
   void setKernel(KernelTarget target);
-  /// Takes bodies, whose first stands for all that never move, and makes room for the groups, whose blocks are
-  /// then to be filled.
+  /// Takes bodies, whose first stands for all that never move, and makes room for the groups, whose blocks
+  /// are then to be filled.
   /// @return false where the numbers of the step do not fit
   /// @param mostKept  no kept impulse is larger, as a speed of the lighter body, m/s
   bool begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
@@ -63,8 +63,8 @@ class BlockSolver {
   struct Frames;
   bool fillPoints(Block& block, Rest& rest, int lane, const Pair<S>& pair, const Frames& of);
   void give(std::uint32_t body, S x, S y, S turn);
-  void give(std::uint32_t body, std::int64_t x, std::int64_t y, std::int64_t turn, std::int64_t& misfit)
-  requires kIntegers;
+  void give(std::uint32_t body, std::int64_t x, std::int64_t y, std::int64_t turn,
+            std::int64_t& misfit) requires kIntegers;
   void setFriction(Block& block, int lane, S friction);
   std::uint64_t integrateVelocities(std::uint32_t begin, std::uint32_t end);
   std::uint64_t integratePositions(std::uint32_t begin, std::uint32_t end);

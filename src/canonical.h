@@ -34,8 +34,8 @@ template <unsigned kSize>
 }
 
 /// Turns fields into their canonical little-endian bytes. `Sink` has `std::uint8_t* reserve(unsigned size)`,
-/// which answers room for that many bytes, at most 8; or `store<size>(std::uint64_t value)`, which takes each
-/// plain number, as unsigned, with its size in bytes.
+/// which answers room for that many bytes, at most 16; or `store<size>(std::uint64_t value)`, which takes
+/// each plain number, as unsigned, with its size in bytes.
 template <class Sink>
 class CanonicalWriter {
  public:
@@ -63,8 +63,14 @@ class CanonicalWriter {
   }
   template <Scalar S>
   void put(const Vector<S>& value) {
-    put(value.x);
-    put(value.y);
+    if constexpr (std::endian::native == std::endian::little && requires { sink_.reserve(16u); }) {
+      // The same bytes in one go.
+      static_assert(sizeof value == 16);
+      std::memcpy(sink_.reserve(sizeof value), &value, sizeof value);
+    } else {
+      put(value.x);
+      put(value.y);
+    }
   }
   template <class Tag>
   void put(const Id<Tag>& value) {

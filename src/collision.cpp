@@ -13,11 +13,11 @@ namespace {
 
 template <Scalar S>
 void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, CollisionInfo<S>& info) {
-  const Vector<S> delta = b.center.v0 - a.center.v0;
+  const Vector<S> delta = b.center() - a.center();
   const S reach = a.radius + b.radius + margin;
   if (exactDot(delta, delta) >= exactProduct(reach, reach)) return;
   info.normal = delta == Vector<S>() ? Vector<S>(S(1), S(0)) : normalize(delta);
-  info.push(a.center.v0 + info.normal * a.radius, b.center.v0 - info.normal * b.radius, 0);
+  info.push(a.center() + info.normal * a.radius, b.center() - info.normal * b.radius, 0);
 }
 
 /// The tangents of a segment towards its neighbours, in the world; zero without one.
@@ -38,7 +38,7 @@ template <Scalar S>
 void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, const NearestEdge<S>& nearest,
                     S reach, CollisionInfo<S>& info) {
   const Vector<S> corner = other.planes[nearest.vertex].v0;
-  const Vector<S> delta = corner - circle.center.v0;
+  const Vector<S> delta = corner - circle.center();
   const Wide<S> apart = exactDot(delta, delta), limit = exactProduct(reach, reach);
   // As in Chipmunk, a segment that is only just met is not touched, a polygon is.
   if (apart > limit || (apart == limit && other.type == ShapeType::segment)) return;
@@ -47,14 +47,14 @@ void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, c
   const Vector<S> n = delta == Vector<S>() ? fallback : normalize(delta);
   if (!endMayTouch(other, nearest.vertex, -n)) return;
   info.normal = n;
-  info.push(circle.center.v0 + n * circle.radius, corner - n * other.radius, 0);
+  info.push(circle.center() + n * circle.radius, corner - n * other.radius, 0);
 }
 
 /// A circle and a segment or polygon. One look at the edges finds what GJK and EPA would.
 template <Scalar S>
 void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, S margin,
                    CollisionInfo<S>& info) {
-  const Vector<S> c = circle.center.v0;
+  const Vector<S> c = circle.center();
   const NearestEdge<S> nearest = nearestEdge(other, c);
   const S reach = circle.radius + other.radius + margin;
   if (nearest.distance > reach) return;

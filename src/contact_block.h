@@ -24,7 +24,8 @@ struct PlainNumbers {
 struct IntegerUnits {
   using Coefficient = std::int32_t;
   static constexpr bool kStoresSpins = true;
-  /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of rates, speeds by ways.
+  /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of rates, speeds by
+  /// ways.
   static constexpr int kUnitBits = 30, kRateBits = 22;
 };
 

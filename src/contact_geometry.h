@@ -62,7 +62,13 @@ inline constexpr int kSteadyUnits = 16;
 template <Scalar S>
 [[gnu::always_inline]] inline RelativePose relativePose(const Frame<S>& a, const Frame<S>& b) {
   // Toward zero: the mirror image stands in the mirror image of the place.
-  const auto units = [](S x) { return static_cast<std::int32_t>(x * S(kPoseUnits)); };
+  const auto units = [](S x) {
+    if constexpr (FixedNumber<S>) {
+      return static_cast<std::int32_t>(x.raw() / ((std::int64_t{1} << S::kBits) / kPoseUnits));
+    } else {
+      return static_cast<std::int32_t>(x * S(kPoseUnits));
+    }
+  };
   const Vector<S> place = a.toLocal(b.origin);
   const Vector<S> turn = unrotate(b.rotation, a.rotation);
   return {units(place.x), units(place.y),

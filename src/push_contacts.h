@@ -24,11 +24,13 @@ struct Surface {
 };
 
 /// Sets for a step what the surfaces of a pair say.
-/// @param normal  the pair's, in the world
+/// @param normal  the pair's, in the world; does not count where both surfaces move alike
 template <Scalar S>
 void takeSurfaces(Pair<S>& pair, const Surface<S>& a, const Surface<S>& b, const Vector<S>& normal) {
   pair.elasticity = min(a.elasticity * b.elasticity, S(kMaxMaterial));
   pair.friction = min(a.friction * b.friction, S(kMaxMaterial));
+  pair.surfaceVelocity = {};
+  if (a.velocity == b.velocity) return;
   const Vector<S> velocity = b.velocity - a.velocity;
   pair.surfaceVelocity = velocity - normal * dot(velocity, normal);
 }

@@ -134,7 +134,7 @@ void touchPoly(const PlacedShape<S>& shape, S moving, const Vector<S>& a, const 
 template <Scalar S>
 PointQueryInfo<S> pointQuery(const PlacedShape<S>& shape, const Vector<S>& point) {
   if (shape.type == ShapeType::circle) {
-    return fromCore(shape.center.v0, point - shape.center.v0, shape.radius, Vector<S>(S(0), S(1)));
+    return fromCore(shape.center(), point - shape.center(), shape.radius, Vector<S>(S(0), S(1)));
   }
   return queryEdges(shape, point);
 }
@@ -147,7 +147,7 @@ SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a
   SegmentQueryInfo<S> best{false, S(1), b, Vector<S>()};
   switch (shape.type) {
     case ShapeType::circle:
-      touchCircle(shape.center.v0, shape.radius, radius, a, b, best);
+      touchCircle(shape.center(), shape.radius, radius, a, b, best);
       break;
     case ShapeType::segment:
       touchSegment(shape, radius, a, b, best);

@@ -38,12 +38,12 @@ void SoftStep<S>::addFree(const SoftStart<S>& start) {
     S velocity = start.velocity[k];
     S moved = S(0);
     for (int i = 0; i < settings.substeps; ++i) {
-      const S next = start.kept == S(1) ? velocity + start.push[k]
-                                        : mulAdd(velocity, start.kept, start.push[k]);
+      const S next =
+          start.kept == S(1) ? velocity + start.push[k] : mulAdd(velocity, start.kept, start.push[k]);
       velocity = clamp(next, -kLimits[k], kLimits[k]);
       if (velocity != next) [[unlikely]]
-        motion.held = static_cast<std::uint8_t>(motion.held |
-                                                (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
+        motion.held =
+            static_cast<std::uint8_t>(motion.held | (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
       moved = mulAdd(velocity, settings.substep, moved);
     }
     motion.velocity[k] = velocity;

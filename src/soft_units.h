@@ -132,8 +132,8 @@ class SoftUnits<S, N> {
         fastest =
             max(fastest, max(wholeBits(most(0) | most(1)), wholeBits(most(2)) + radius(start.radiusBits)));
       }
-      // Every magnitude is below twice the power of two that its bits say. An impulse is up to twice the speed
-      // that it gives the lighter body, and totals of more than four substeps want room.
+      // Every magnitude is below twice the power of two that its bits say. An impulse is up to twice the
+      // speed that it gives the lighter body, and totals of more than four substeps want room.
       const int total = max(static_cast<int>(std::bit_width(static_cast<unsigned>(of.substeps))) - 3, 0);
       speedBits_ = min(min(kSpeedBits - kSpareBits - fastest,
                            kSpeedBits - 2 - total - wholeBits(raw::magnitude(mostKept.raw()))),
@@ -161,8 +161,8 @@ class SoftUnits<S, N> {
       // pushed apart as if it did not.
       const std::int64_t perSubstep = max(std::int64_t{to.perSubstep}, std::int64_t{1});
       to.mostGap = narrow(min((std::int64_t{N::kRange} << N::kRateBits) / perSubstep, kMost));
-      to.mostOverlap = narrow(min((7 * std::int64_t{N::kRange} << N::kRateBits) / perSubstep,
-                                  std::int64_t{1} << 30));
+      to.mostOverlap =
+          narrow(min((7 * std::int64_t{N::kRange} << N::kRateBits) / perSubstep, std::int64_t{1} << 30));
     }
     return to;
   }
@@ -183,7 +183,9 @@ class SoftUnits<S, N> {
   [[gnu::always_inline]] Speed way(S x) const {
     return static_cast<Speed>(clamp(units::shifted(x.raw(), 32 - wayBits_), -kMost, kMost));
   }
-  [[gnu::always_inline]] Sum sum(S x, std::int64_t& misfit) const { return static_cast<Sum>(speedOf(x, 0, misfit)); }
+  [[gnu::always_inline]] Sum sum(S x, std::int64_t& misfit) const {
+    return static_cast<Sum>(speedOf(x, 0, misfit));
+  }
 
   static S fromUnit(std::int32_t x) {
     return S::fromRaw(std::int64_t{x} * (std::int64_t{1} << (32 - N::kUnitBits)));

@@ -1,11 +1,54 @@
 // SPDX-License-Identifier: MIT
 // What a Space computes from its state and may forget at any time: lists of shapes, placed geometry, trees.
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "require_ieee.h"
 #include "space_impl.h"
 
 namespace samestep {
+
+template <Scalar S>
+void LocalPlanes<S>::clear() {
+  planes_.clear();
+  geometries_.clear();
+  firstFree_.assign(kMaxPolyVertices + 1, kNone);
+  last_ = kNone;
+}
+
+template <Scalar S>
+std::uint32_t LocalPlanes<S>::use(const Plane<S>* planes, std::uint32_t count) {
+  static_assert(std::is_trivially_copyable_v<Plane<S>>);
+  // By bits: zeros of two signs are equal, and not the same.
+  const bool same = last_ != kNone && geometries_[last_].count == count && geometries_[last_].users != 0 &&
+                    std::memcmp(of(last_), planes, count * sizeof(Plane<S>)) == 0;
+  if (same) {
+    ++geometries_[last_].users;
+    return last_;
+  }
+  last_ = firstFree_[count];
+  if (last_ == kNone) {
+    last_ = static_cast<std::uint32_t>(geometries_.size());
+    geometries_.push_back({static_cast<std::uint32_t>(planes_.size()), count, 1, kNone});
+    planes_.insert(planes_.end(), planes, planes + count);
+  } else {
+    Geometry& again = geometries_[last_];
+    firstFree_[count] = again.nextFree;
+    again.users = 1;
+    std::copy(planes, planes + count, planes_.begin() + again.offset);
+  }
+  return last_;
+}
+
+template <Scalar S>
+void LocalPlanes<S>::release(std::uint32_t geometry) {
+  if (geometry == kNone || --geometries_[geometry].users != 0) return;
+  Geometry& unused = geometries_[geometry];
+  unused.nextFree = firstFree_[unused.count];
+  firstFree_[unused.count] = geometry;
+}
 
 template <Scalar S>
 void SpaceCache<S>::copyFrom(const SpaceCache& other) {
@@ -23,6 +66,8 @@ void SpaceCache<S>::copyFrom(const SpaceCache& other) {
   leftMidway = other.leftMidway;
   planeOffset = other.planeOffset;
   planes = other.planes;
+  localPlanes = other.localPlanes;
+  geometry = other.geometry;
   touched = other.touched;
   isTouched = other.isTouched;
   planeRoom = other.planeRoom;
@@ -34,7 +79,10 @@ void SpaceCache<S>::copyFrom(const SpaceCache& other) {
 /// Points each placed shape to its planes.
 template <Scalar S>
 void SpaceCache<S>::usePlanes() {
-  for (std::size_t i = 0; i < placed.size(); ++i) placed[i].planes = planes.data() + planeOffset[i];
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    placed[i].planes = planes.data() + planeOffset[i];
+    placed[i].local = geometry[i] == LocalPlanes<S>::kNone ? nullptr : localPlanes.of(geometry[i]);
+  }
 }
 
 template <Scalar S>
@@ -44,8 +92,8 @@ std::uint64_t SpaceCache<S>::bytes() const {
   };
   if (!cached) return 0;
   return of(poses, firstShape, lastShape, nextShape, placed, traits, planeOffset, planes, touched, isTouched,
-            planeRoom) +
-         staticTree.bytes() + dynamicTree.bytes();
+            planeRoom, geometry) +
+         localPlanes.bytes() + staticTree.bytes() + dynamicTree.bytes();
 }
 
 template <Scalar S>
@@ -107,6 +155,7 @@ void Space<S>::Impl::growShapes(std::uint32_t slots) {
   traits.resize(slots);
   planeOffset.resize(slots, 0);
   planeRoom.resize(slots, 0);
+  geometry.resize(slots, kNone);
 }
 
 template <Scalar S>
@@ -147,17 +196,22 @@ void Space<S>::Impl::unlinkShape(std::uint32_t body, std::uint32_t shape) {
 
 template <Scalar S>
 void Space<S>::Impl::prepareShape(std::uint32_t index, const Shape<S>& shape) {
-  const std::uint32_t room = static_cast<std::uint32_t>(planeCount(shape));
-  if (room > planeRoom[index]) {
-    const Plane<S>* before = planes.data();
-    planeOffset[index] = static_cast<std::uint32_t>(planes.size());
-    planeRoom[index] = room;
-    planes.resize(planes.size() + room);
-    if (planes.data() != before) this->usePlanes();
-  }
-  placed[index].planes = planes.data() + planeOffset[index];
+  const std::uint32_t count = static_cast<std::uint32_t>(planeCount(shape));
+  Plane<S> local[kMaxPolyVertices];
+  prepare(shape, local, placed[index]);
   traits[index] = ShapeTraits<S>::of(shape);
-  prepare(shape, placed[index]);
+  const Plane<S>* const before = planes.data();
+  const Plane<S>* const localBefore = localPlanes.data();
+  localPlanes.release(geometry[index]);
+  geometry[index] = localPlanes.use(local, count);
+  if (count > planeRoom[index]) {
+    planeOffset[index] = static_cast<std::uint32_t>(planes.size());
+    planeRoom[index] = count;
+    planes.resize(planes.size() + count);
+  }
+  if (planes.data() != before || localPlanes.data() != localBefore) this->usePlanes();
+  placed[index].planes = planes.data() + planeOffset[index];
+  placed[index].local = localPlanes.of(geometry[index]);
 }
 
 template <Scalar S>
@@ -200,6 +254,8 @@ void Space<S>::ensureCache() const {
   impl.planeOffset.assign(state_.shapes.slots(), 0);
   impl.planeRoom.assign(state_.shapes.slots(), 0);
   impl.planes.clear();
+  impl.localPlanes.clear();
+  impl.geometry.assign(state_.shapes.slots(), Impl::kNone);
   impl.clearBoxes();
   state_.shapes.each([&](ShapeId id, const Shape<S>& shape) {
     impl.linkShape(shape.body().index, id.index);
@@ -302,13 +358,16 @@ std::span<const std::uint32_t> Space<S>::threadOf(BodyId id) {
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
+template class LocalPlanes<double>;
 template struct SpaceCache<double>;
 template class SavedSpace<double>;
 template class Space<double>;
 #endif
+template class LocalPlanes<Fixed>;
 template struct SpaceCache<Fixed>;
 template class SavedSpace<Fixed>;
 template class Space<Fixed>;
+template class LocalPlanes<CheckedFixed>;
 template struct SpaceCache<CheckedFixed>;
 template class SavedSpace<CheckedFixed>;
 template class Space<CheckedFixed>;

@@ -34,18 +34,52 @@ struct ShapeTraits {
   std::uint32_t body = 0;
   ShapeFilter filter{};
   std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
-  S extent{};             ///< The same, exactly.
+  S extent{};              ///< The same, exactly.
   bool sensor = false;
   bool round = false;    ///< A circle.
   bool rounded = false;  ///< Has a radius: its surface may roll.
 
   static ShapeTraits of(const Shape<S>& shape) {
-    return {Surface<S>::of(shape), shape.body().index,
-            shape.filter(),        static_cast<std::int32_t>(shape.extent()) + 1,
+    return {Surface<S>::of(shape),
+            shape.body().index,
+            shape.filter(),
+            static_cast<std::int32_t>(shape.extent()) + 1,
             shape.extent(),
-            shape.sensor(),        shape.type() == ShapeType::circle,
+            shape.sensor(),
+            shape.type() == ShapeType::circle,
             shape.radius() != S(0)};
   }
+};
+
+/// The planes of shapes as their bodies hold them. Shapes of one geometry in a row, as in most worlds, share
+/// them: a step then reads them from few places.
+template <Scalar S>
+class LocalPlanes {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  void clear();
+  /// Where planes stand that are equal to these, bit by bit, for one more user.
+  std::uint32_t use(const Plane<S>* planes, std::uint32_t count);
+  /// One user less, of what use() answered, or kNone.
+  void release(std::uint32_t geometry);
+  const Plane<S>* of(std::uint32_t geometry) const { return data() + geometries_[geometry].offset; }
+  const Plane<S>* data() const { return planes_.data(); }
+  /// Of memory that a copy takes.
+  std::uint64_t bytes() const {
+    return planes_.size() * sizeof(Plane<S>) + geometries_.size() * sizeof(Geometry);
+  }
+
+ private:
+  struct Geometry {
+    std::uint32_t offset, count, users;
+    std::uint32_t nextFree;  ///< Of those with as many planes.
+  };
+
+  std::vector<Plane<S>> planes_;
+  std::vector<Geometry> geometries_;
+  std::vector<std::uint32_t> firstFree_ = std::vector<std::uint32_t>(kMaxPolyVertices + 1, kNone);
+  std::uint32_t last_ = kNone;
 };
 
 /// What a Space computes from its state and can compute again at any time, by body or shape slot. A saved
@@ -73,6 +107,8 @@ struct SpaceCache {
   bool surfacesKnown = false;
   std::vector<std::uint32_t> planeOffset;
   std::vector<Plane<S>> planes;
+  LocalPlanes<S> localPlanes;
+  std::vector<std::uint32_t> geometry;  // Of each shape, in localPlanes.
   // Whether a step left midway: it may have moved bodies without placing them.
   bool leftMidway = false;
   // Bodies that may have been moved by hand since the last step, each once.
@@ -91,7 +127,7 @@ struct Space<S>::Impl : SpaceCache<S> {
   using SpaceCache<S>::poses, SpaceCache<S>::firstShape, SpaceCache<S>::lastShape, SpaceCache<S>::nextShape,
       SpaceCache<S>::placed, SpaceCache<S>::planeOffset, SpaceCache<S>::planes, SpaceCache<S>::touched,
       SpaceCache<S>::isTouched, SpaceCache<S>::planeRoom, SpaceCache<S>::traits, SpaceCache<S>::staticTree,
-      SpaceCache<S>::dynamicTree;
+      SpaceCache<S>::dynamicTree, SpaceCache<S>::localPlanes, SpaceCache<S>::geometry;
 
   // Wiring: who is told. By rising number.
   template <class Function>
@@ -138,8 +174,20 @@ struct Space<S>::Impl : SpaceCache<S> {
   std::vector<std::uint32_t> groupOrder;
   std::vector<std::uint32_t> solverIndex;
   std::vector<std::uint32_t> solverBodies;
+  // Of each pair: whether its boxes overlap; whether it touched before and does not now.
   std::vector<std::uint8_t> overlapping;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> newPairs;
+  std::vector<std::uint8_t> left;
+  struct NewPair {
+    std::uint32_t to;
+    std::uint32_t a, b;
+  };
+  std::vector<NewPair> newPairs;
+  // Pairs of the last step that all move by as much; some of them may be gone.
+  struct PairRun {
+    std::uint32_t from, end;
+    std::int64_t shift;
+  };
+  std::vector<PairRun> pairRuns;
   bool someLeft = false;
   std::vector<std::uint8_t> held;
   std::vector<std::uint8_t> placedAnew;

@@ -30,7 +30,9 @@ template <Scalar S, class Solver, class Impl>
 bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs,
                const SlotMap<Body<S>, BodyId>& bodies, S bounceThreshold) {
   Finding misfit, bounces, strikes;
-  const auto pairAt = [&](std::uint32_t i) -> const Pair<S>& { return pairs[impl.solvedPairs[impl.groupOrder[i]]]; };
+  const auto pairAt = [&](std::uint32_t i) -> const Pair<S>& {
+    return pairs[impl.solvedPairs[impl.groupOrder[i]]];
+  };
   const auto last = static_cast<std::uint32_t>(impl.groupOrder.size());
   // The lot between groups scatters what is asked for.
   const auto fetchAhead = [&](std::uint32_t i) {
@@ -130,7 +132,8 @@ void Space<S>::softFindGroups() {
     impl.solverIndex[a] = impl.solverIndex[b] = 0;
     impl.solvedPairs.push_back(i);
     for (int k = 0; fast && k < pair.count; ++k) {
-      impl.soft.mostKept = max(impl.soft.mostKept, max(pair.contacts[k].normalSpeed, abs(pair.contacts[k].tangentSpeed)));
+      impl.soft.mostKept =
+          max(impl.soft.mostKept, max(pair.contacts[k].normalSpeed, abs(pair.contacts[k].tangentSpeed)));
     }
     impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic(),
                     pair.count == 1);

@@ -167,25 +167,49 @@ S Space<S>::pairMargin() const {
   return state_.settings.solver == SolverKind::softStep ? state_.settings.contactMargin : S(0);
 }
 
+namespace {
+
+/// Of a pair, by which pairs are sorted.
+std::uint64_t sortKey(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
+
+/// As intersects with a box grown by a margin, without a branch: for boxes that are near each other, whether
+/// they overlap is as good as random.
+template <Scalar S>
+[[gnu::always_inline]] inline bool nearBoxes(const BB<S>& a, S margin, const BB<S>& b) {
+  const BB<S> grown = inflate(a, margin);
+  return static_cast<bool>((grown.left <= b.right) & (b.left <= grown.right) & (grown.bottom <= b.top) &
+                           (b.bottom <= grown.top));
+}
+
+}  // namespace
+
+// Candidates and pairs are sorted alike and walked side by side. Where a pair goes is known before any is
+// moved, so that none moves twice, and none at all in a world at rest.
 template <Scalar S>
 void Space<S>::findPairs() {
   Impl& impl = *impl_;
-  auto& pairs = state_.pairs;
+  const auto& pairs = state_.pairs;
   const S margin = pairMargin();
   if (impl.dynamicTree.margin() != margin) {
     impl.dynamicTree.setMargin(margin);
     impl.staticTree.setMargin(margin);
   }
   impl.dynamicTree.updatePairs();
-  // Both lists are sorted. The pairs that stay close up in place; the new ones are merged in afterwards.
-  impl.overlapping.clear();
+  const std::vector<KeyPair>& candidates = impl.dynamicTree.pairs();
+  impl.overlapping.resize(pairs.size() + candidates.size());
   impl.newPairs.clear();
-  std::size_t old = 0, kept = 0;
-  const auto keep = [&](bool overlap) {
-    if (kept != old) pairs[kept] = pairs[old];
-    ++old;
-    ++kept;
-    impl.overlapping.push_back(overlap ? 1 : 0);
+  impl.pairRuns.clear();
+  typename Impl::PairRun run{0, 0, 0};
+  const std::uint32_t count = static_cast<std::uint32_t>(pairs.size());
+  std::uint32_t old = 0, to = 0;
+  const auto keep = [&](std::uint8_t overlap) {
+    const std::int64_t shift = std::int64_t{to} - old;
+    if (shift != run.shift) {
+      impl.pairRuns.push_back(run);
+      run = {old, old, shift};
+    }
+    run.end = ++old;
+    impl.overlapping[to++] = overlap;
   };
   // Its boxes came apart: only a contact that may come back is kept, and one whose end is still to be told.
   const auto leave = [&] {
@@ -195,50 +219,64 @@ void Space<S>::findPairs() {
     if (pair.state == ArbiterState::apart || forgotten) {
       ++old;
     } else {
-      keep(false);
+      keep(0);
     }
   };
-  for (const auto [a, b] : impl.dynamicTree.pairs()) {
-    if (!intersects(inflate(impl.placed[a].box, margin), impl.placed[b].box) || !mayCollide(a, b)) continue;
-    while (old < pairs.size() && std::pair(pairs[old].a.index, pairs[old].b.index) < std::pair(a, b)) leave();
-    if (old < pairs.size() && pairs[old].a.index == a && pairs[old].b.index == b) {
-      keep(true);
-    } else {
-      impl.newPairs.emplace_back(a, b);
+  const auto keyOf = [](const Pair<S>& pair) { return sortKey(pair.a.index, pair.b.index); };
+  constexpr std::size_t kChunk = 256;
+  std::uint64_t close[kChunk];
+  for (std::size_t begin = 0; begin < candidates.size(); begin += kChunk) {
+    const std::size_t end = min(begin + kChunk, candidates.size());
+    std::size_t found = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [a, b] = candidates[i];
+      close[found] = sortKey(a, b);
+      found += nearBoxes(impl.placed[a].box, margin, impl.placed[b].box) ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < found; ++i) {
+      const std::uint64_t key = close[i];
+      const std::uint32_t a = static_cast<std::uint32_t>(key >> 32), b = static_cast<std::uint32_t>(key);
+      if (!mayCollide(a, b)) continue;
+      while (old < count && keyOf(pairs[old]) < key) leave();
+      if (old < count && keyOf(pairs[old]) == key) {
+        keep(1);
+      } else {
+        impl.newPairs.push_back({to, a, b});
+        impl.overlapping[to++] = 1;
+      }
     }
   }
-  while (old < pairs.size()) leave();
-  if (kept != old || !impl.newPairs.empty()) impl.threadsKnown = false;
-  pairs.resize(kept);
-  mergeNewPairs();
+  while (old < count) leave();
+  impl.pairRuns.push_back(run);
+  if (to != count || impl.pairRuns.size() > 1 || !impl.newPairs.empty()) impl.threadsKnown = false;
+  movePairs(to);
   endStage(Stage::findPairs);
 }
 
-/// From the back, so that the old pairs need no second array.
+/// Puts all pairs where findPairs wants them. Their order stays, so one that moves down finds its place free
+/// once those below it that move down have moved, and the same upwards.
 template <Scalar S>
-void Space<S>::mergeNewPairs() {
+void Space<S>::movePairs(std::uint32_t count) {
   Impl& impl = *impl_;
   auto& pairs = state_.pairs;
-  std::size_t fresh = impl.newPairs.size();
-  if (fresh == 0) return;
-  std::size_t old = pairs.size();
-  const std::size_t count = old + fresh;
+  impl.overlapping.resize(count);
   // Little room to spare: these are the largest records of a world.
   if (count > pairs.capacity()) pairs.reserve(count + count / 8);
-  pairs.resize(count);
-  impl.overlapping.resize(count);
-  for (std::size_t to = count; fresh > 0; --to) {
-    const auto [a, b] = impl.newPairs[fresh - 1];
-    if (old > 0 && std::pair(pairs[old - 1].a.index, pairs[old - 1].b.index) > std::pair(a, b)) {
-      --old;
-      pairs[to - 1] = pairs[old];
-      impl.overlapping[to - 1] = impl.overlapping[old];
-    } else {
-      pairs[to - 1] = newPair<S>(state_.shapes.idAt(a), state_.shapes.idAt(b));
-      impl.overlapping[to - 1] = 1;
-      --fresh;
+  if (count > pairs.size()) pairs.resize(count);
+  const auto first = pairs.begin();
+  const auto& runs = impl.pairRuns;
+  for (auto run = runs.begin(); run != runs.end(); ++run) {
+    if (run->shift < 0) std::copy(first + run->from, first + run->end, first + (run->from + run->shift));
+  }
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
+    if (run->shift > 0) {
+      std::copy_backward(first + run->from, first + run->end, first + (run->end + run->shift));
     }
   }
+  for (const typename Impl::NewPair& fresh : impl.newPairs) {
+    pairs[fresh.to] = newPair<S>(state_.shapes.idAt(fresh.a), state_.shapes.idAt(fresh.b));
+  }
+  pairs.resize(count);
   // As when a world is built.
   if (impl.newPairs.size() > 4096 && impl.newPairs.size() == count) impl.newPairs = {};
 }
@@ -251,6 +289,7 @@ void Space<S>::collidePairs() {
   const bool surfacesKnown = impl.surfacesKnown;
   impl.surfacesKnown = false;
   impl.someLeft = false;
+  impl.left.resize(count);
   // Handlers are asked in order, and see the pairs before theirs updated, those after it not.
   if (!crew.helpsWith(count, Impl::kFewPairs) || !state_.handlers.empty()) {
     impl.someLeft = collidePairs(0, count, surfacesKnown, collisionStats_);
@@ -283,7 +322,7 @@ void Space<S>::collidePairs() {
 template <Scalar S>
 bool Space<S>::collidePairs(std::uint32_t begin, std::uint32_t end, bool surfacesKnown,
                             CollisionStats& stats) {
-  const Impl& impl = *impl_;
+  Impl& impl = *impl_;
   bool someLeft = false;
   for (std::uint32_t i = begin; i < end; ++i) {
     Pair<S>& pair = state_.pairs[i];
@@ -291,7 +330,9 @@ bool Space<S>::collidePairs(std::uint32_t begin, std::uint32_t end, bool surface
     pair.solved = 0;
     if (pair.state != ArbiterState::apart && pair.age != 0xffffffffu) ++pair.age;
     if (impl.overlapping[i] != 0) collidePair(pair, surfacesKnown, stats);
-    if (pair.state != ArbiterState::apart && pair.age != 0) someLeft = true;
+    const bool left = pair.state != ArbiterState::apart && pair.age != 0;
+    impl.left[i] = left ? 1 : 0;
+    someLeft |= left;
   }
   return someLeft;
 }
@@ -330,8 +371,10 @@ void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown, CollisionStats& st
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
   }
   pair.age = 0;
-  if (!same || !surfacesKnown || shapeA.surface.velocity != shapeB.surface.velocity) {
-    takeSurfaces(pair, shapeA.surface, shapeB.surface, rotate(pair.localNormal, bodyA.frame.rotation));
+  const bool belt = shapeA.surface.velocity != shapeB.surface.velocity;
+  if (!same || !surfacesKnown || belt) {
+    const Vector<S> normal = belt ? rotate(pair.localNormal, bodyA.frame.rotation) : Vector<S>();
+    takeSurfaces(pair, shapeA.surface, shapeB.surface, normal);
   }
   const bool wanted = applyCollision(pair);
   const bool moves = bodyA.type == BodyType::dynamicBody || bodyB.type == BodyType::dynamicBody;
@@ -372,10 +415,11 @@ bool Space<S>::rests(const Pair<S>& pair) const {
 template <Scalar S>
 void Space<S>::expirePairs() {
   Impl& impl = *impl_;
-  bool dropped = false;
+  std::size_t firstDropped = state_.pairs.size();
   for (std::size_t i = 0; impl.someLeft && i < state_.pairs.size(); ++i) {
+    if (impl.left[i] == 0) continue;
     Pair<S>& pair = state_.pairs[i];
-    if (pair.state == ArbiterState::apart || pair.age == 0 || rests(pair)) continue;
+    if (rests(pair)) continue;
     if (pair.state != ArbiterState::cached) {
       pair.state = ArbiterState::cached;
       callSeparate(pair, false);
@@ -390,12 +434,12 @@ void Space<S>::expirePairs() {
     } else {
       pair.state = ArbiterState::apart;
       pair.age = 0;
-      dropped = true;
+      firstDropped = min(firstDropped, i);
     }
   }
-  if (dropped) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
+  if (firstDropped != state_.pairs.size()) {
+    std::size_t kept = firstDropped;
+    for (std::size_t i = firstDropped; i < state_.pairs.size(); ++i) {
       if (state_.pairs[i].state == ArbiterState::apart && impl.overlapping[i] == 0) continue;
       if (kept != i) state_.pairs[kept] = state_.pairs[i];
       ++kept;

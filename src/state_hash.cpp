@@ -4,10 +4,22 @@
 
 namespace samestep {
 
-HashSink::HashSink() { XXH3_64bits_reset(&state_); }
+namespace {
+
+void update(void* state, const void* bytes, std::size_t size) {
+  XXH3_64bits_update(static_cast<XXH3_state_t*>(state), bytes, size);
+}
+
+}  // namespace
+
+HashSink::HashSink(KernelTarget target)
+    : update_(nextBestKernel(target) == KernelTarget::avx2 && hashUpdateAvx2 != nullptr ? hashUpdateAvx2
+                                                                                        : update) {
+  XXH3_64bits_reset(&state_);
+}
 
 void HashSink::flush() {
-  XXH3_64bits_update(&state_, chunk_, used_);
+  update_(&state_, chunk_, used_);
   used_ = 0;
 }
 

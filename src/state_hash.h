@@ -6,21 +6,26 @@
 
 #include <cstdint>
 
+#include <samestep/kernel.h>
+
 #include "canonical.h"
+#include "hash_update.h"
 
 namespace samestep {
 
 /// Hashes records: XXH3-64 of their canonical bytes, the same value on every machine.
 class HashSink {
  public:
-  HashSink();
+  /// @param target  whose instructions are used, if it is available: no hash depends on it
+  explicit HashSink(KernelTarget target = KernelTarget::best);
 
   template <class T>
   [[gnu::flatten]] void put(const T& record) {
-    // No field is visited twice, so the canonical bytes are no more than the record's own. They are written
-    // through a pointer that stays in a register.
-    static_assert(sizeof(T) <= kChunk);
-    if (kChunk - used_ < sizeof(T)) flush();
+    // No field is visited twice, so the canonical bytes are no more than the record's own and what it holds
+    // outside. They are written through a pointer that stays in a register.
+    constexpr unsigned kMost = mostBytes<T>();
+    static_assert(kMost <= kChunk);
+    if (kChunk - used_ < kMost) flush();
     Pointer pointer{chunk_ + used_};
     CanonicalWriter<Pointer> write(pointer);
     write.put(record);
@@ -39,9 +44,18 @@ class HashSink {
   };
   static constexpr unsigned kChunk = 8192;
 
+  template <class T>
+  static constexpr unsigned mostBytes() {
+    if constexpr (requires { T::kBytesOutside; }) {
+      return sizeof(T) + T::kBytesOutside;
+    } else {
+      return sizeof(T);
+    }
+  }
   void flush();
 
   XXH3_state_t state_;
+  HashUpdate update_;
   unsigned used_ = 0;
   alignas(64) std::uint8_t chunk_[kChunk];
 };

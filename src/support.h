@@ -14,8 +14,7 @@ struct SupportShape {
   const Plane<S>* planes;
   int count;
 
-  explicit SupportShape(const PlacedShape<S>& shape)
-      : planes(shape.type == ShapeType::circle ? &shape.center : shape.planes), count(shape.count) {}
+  explicit SupportShape(const PlacedShape<S>& shape) : planes(shape.planes), count(shape.count) {}
 
   /// The vertex farthest along n; of equals the first. MIS: polySupportPointIndex
   int farthest(const Vector<S>& n) const {

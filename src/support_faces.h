@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <type_traits>
 
 #include "support.h"
 
@@ -51,6 +53,18 @@ struct ExactWay {
   static Number length(S length) { return exactProduct(length, S(1)); }
 };
 
+/// -1, all bits, if a < b, and 0 if not, for numbers that are finite. Compilers would make a branch of it
+/// where a and b are double; and which of some vertices is nearest cannot be guessed.
+template <class Number>
+[[gnu::always_inline]] inline int lessMask(Number a, Number b) {
+  if constexpr (std::is_floating_point_v<Number>) {
+    // A difference is 0 only of equals.
+    return -static_cast<int>(std::bit_cast<std::uint64_t>(a - b) >> 63);
+  } else {
+    return -static_cast<int>(a < b);
+  }
+}
+
 /// How far a face is from the nearest vertex of another shape.
 template <class Way, Scalar S>
 FaceAxis<S> separationAt(const PlacedShape<S>& shape, int face, const PlacedShape<S>& other, bool onB) {
@@ -61,10 +75,8 @@ FaceAxis<S> separationAt(const PlacedShape<S>& shape, int face, const PlacedShap
   int nearest = 0;
   for (int i = 1; i < other.count; ++i) {
     const typename Way::Number next = along(i);
-    if (next < least) {
-      least = next;
-      nearest = i;
-    }
+    nearest += (i - nearest) & lessMask(next, least);
+    least = min(least, next);
   }
   return {toScalar(exactDot(other.planes[nearest].v0 - plane.v0, plane.n)), face, nearest, onB};
 }
@@ -77,16 +89,18 @@ struct FarthestFace {
 
   template <class Place, class S>
   FarthestFace(const PlacedShape<S>& shape, const Place* own, const Place* others, int otherCount) {
-    for (int i = 0; i < shape.count; ++i) {
+    const auto apart = [&](int i) {
       const auto n = Way::unit(shape.planes[i].n);
       // Without branches: which vertex it is, is seldom asked.
       typename Way::Number least = Way::along(others[0], n);
       for (int j = 1; j < otherCount; ++j) least = min(least, Way::along(others[j], n));
-      const typename Way::Number apart = least - Way::along(own[i], n);
-      if (i == 0 || apart > separation) {
-        separation = apart;
-        face = i;
-      }
+      return least - Way::along(own[i], n);
+    };
+    separation = apart(0);
+    for (int i = 1; i < shape.count; ++i) {
+      const typename Way::Number next = apart(i);
+      face += (i - face) & lessMask(separation, next);
+      separation = max(separation, next);
     }
   }
 };
@@ -97,11 +111,16 @@ inline constexpr int kMaxFacePairs = 64;
 template <class Way, Scalar S>
 FaceAxis<S> searchFaces(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, std::uint32_t start) {
   using Axis = FaceAxis<S>;
+  const auto axisOf = [&](int face, bool onB) {
+    return onB ? separationAt<Way>(b, face, a, true) : separationAt<Way>(a, face, b, false);
+  };
+  Axis old;
+  old.face = -1;
   if ((start & Axis::kTag) != 0) {
     const bool onB = (start & Axis::kOnB) != 0;
     const int face = static_cast<int>(start & Axis::kFace);
     if (face < (onB ? b : a).count) {
-      const Axis old = onB ? separationAt<Way>(b, face, a, true) : separationAt<Way>(a, face, b, false);
+      old = axisOf(face, onB);
       if (old.separation > reach) return old;
     }
   }
@@ -114,7 +133,8 @@ FaceAxis<S> searchFaces(const PlacedShape<S>& a, const PlacedShape<S>& b, S reac
   // Of two faces that lie flat on each other it is A's, whatever rounding makes of it: the answer stays the
   // same from step to step, and a segment is touched in its face, not at its end.
   const bool onB = faceOfB.separation > faceOfA.separation + Way::length(kFlat<S>);
-  return onB ? separationAt<Way>(b, faceOfB.face, a, true) : separationAt<Way>(a, faceOfA.face, b, false);
+  const int face = onB ? faceOfB.face : faceOfA.face;
+  return face == old.face && onB == old.onB ? old : axisOf(face, onB);
 }
 
 /// The best of all faces, or the one looked at first if that one separates the shapes by more than `reach`.

@@ -235,21 +235,40 @@ TYPED_TEST(ShapeTest, PlacedNormalsPointOutAndTurnWithThePose) {
 TYPED_TEST(ShapeTest, PreparedShapeIsMovedAgainWithoutTheShape) {
   using S = TypeParam;
   const Shape<S> shape = TestFixture::box();
-  std::vector<Plane<S>> planes(static_cast<std::size_t>(planeCount(shape)));
+  std::vector<Plane<S>> planes(static_cast<std::size_t>(planeCount(shape))), local = planes;
   PlacedShape<S> placed;
   placed.planes = planes.data();
-  prepare(shape, placed);
+  prepare(shape, local.data(), placed);
   for (int i = 0; i < 4; ++i) {
     const Transform<S> pose = Transform<S>::rigid(TestFixture::at(i, -i), S(i));
     EXPECT_EQ(place(pose, placed), boundingBox(shape, pose));
   }
 }
 
+// Of a box around its origin half the planes are computed.
+TYPED_TEST(ShapeTest, EachPlaneOfABoxIsMovedByThePoseToTheLastBit) {
+  using S = TypeParam;
+  Random random(11);
+  for (int round = 0; round < 200; ++round) {
+    const Shape<S> shape = boxShape<S>(BodyId(), random.number<S>(1, 4), random.number<S>(1, 4));
+    const Transform<S> pose = Transform<S>::rigid({random.number<S>(-100, 100), random.number<S>(-100, 100)},
+                                                  random.number<S>(-4, 4));
+    const Placement<S> box(shape, pose);
+    BB<S> around(box->planes[0].v0.x, box->planes[0].v0.y, box->planes[0].v0.x, box->planes[0].v0.y);
+    for (int i = 0; i < box->count; ++i) {
+      EXPECT_EQ(box->planes[i].v0, transformPoint(pose, shape.vertices()[static_cast<std::size_t>(i)]));
+      EXPECT_EQ(box->planes[i].n, transformVect(pose, box->local[i].n));
+      around = expand(around, box->planes[i].v0);
+    }
+    EXPECT_EQ(box->box, around);
+  }
+}
+
 TYPED_TEST(ShapeTest, PlaneCountIsWhatEachTypeNeeds) {
   using S = TypeParam;
-  EXPECT_EQ(planeCount(circleShape<S>(BodyId(), S(1))), 0);
-  EXPECT_EQ(planeCount(segmentShape<S>(BodyId(), Vector<S>(), TestFixture::at(1, 0))), 6);
-  EXPECT_EQ(planeCount(TestFixture::box()), 8);
+  EXPECT_EQ(planeCount(circleShape<S>(BodyId(), S(1))), 1);
+  EXPECT_EQ(planeCount(segmentShape<S>(BodyId(), Vector<S>(), TestFixture::at(1, 0))), 3);
+  EXPECT_EQ(planeCount(TestFixture::box()), 4);
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

@@ -200,6 +200,33 @@ TYPED_TEST(SpaceTest, BodiesLeaveEmptyAndNeverTheDesignatedOne) {
   EXPECT_EQ(space.bodyCount(), 1u);
 }
 
+TYPED_TEST(SpaceTest, AShapeThatChangesOrGoesLeavesItsEqualsAsTheyAre) {
+  using S = TypeParam;
+  Space<S> space;
+  std::vector<ShapeId> boxes;
+  for (int i = 0; i < 4; ++i) boxes.push_back(addBox<S>(space, {S(4 * i), S(0)}, S(1), S(1), S(1)));
+  const auto boxAt = [](int i, int half) {
+    return BB<S>(S(4 * i - half), S(-half), S(4 * i + half), S(half));
+  };
+  const auto halfBoxAt = [](int i) {
+    const S half = ratio<S>(1, 2);
+    return BB<S>(S(4 * i) - half, -half, S(4 * i) + half, half);
+  };
+  for (int i = 0; i < 4; ++i) ASSERT_EQ(space.boundingBox(boxes[static_cast<std::size_t>(i)]), halfBoxAt(i));
+
+  Shape<S> larger = boxShape<S>(space.shape(boxes[0]).body(), S(2), S(2));
+  larger.setMass(S(1));
+  space.replace(boxes[0], larger);
+  EXPECT_EQ(space.boundingBox(boxes[0]), boxAt(0, 1));
+  for (int i = 1; i < 4; ++i) EXPECT_EQ(space.boundingBox(boxes[static_cast<std::size_t>(i)]), halfBoxAt(i));
+  space.removeWithShapes(bodyOf(space, boxes[1]));
+  boxes[1] = addBox<S>(space, {S(4), S(0)}, S(2), S(2), S(1));
+  space.replace(boxes[2], larger);
+  space.step(kTick<S>);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(space.boundingBox(boxes[static_cast<std::size_t>(i)]), boxAt(i, 1));
+  EXPECT_EQ(space.boundingBox(boxes[3]), halfBoxAt(3));
+}
+
 TYPED_TEST(SpaceTest, StaticBodyIsReplacedWhenItHasNoShapes) {
   using S = TypeParam;
   auto& space = this->space_;

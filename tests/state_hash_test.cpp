@@ -70,6 +70,18 @@ TEST(StateHashTest, LongInputsAreHashedAsAWhole) {
   EXPECT_EQ(sink.finish(), hashOfBytes(bytes));
 }
 
+TEST(StateHashTest, IsTheSameWithEveryKernel) {
+  for (const std::uint32_t numbers : {0u, 1u, 30u, 31u, 100u, 1023u, 1024u, 1025u, 5000u}) {
+    std::vector<std::uint8_t> bytes;
+    for (std::uint32_t i = 0; i < 8 * numbers; ++i) bytes.push_back(static_cast<std::uint8_t>(i * i >> 3));
+    for (const KernelTarget target : availableKernels()) {
+      HashSink sink(target);
+      for (std::uint32_t i = 0; i < numbers; ++i) sink.put(loadLittleEndian<8>(bytes.data() + 8 * i));
+      EXPECT_EQ(sink.finish(), hashOfBytes(bytes)) << kernelName(target) << ", " << numbers << " numbers";
+    }
+  }
+}
+
 TYPED_TEST(StateHashTest, EverySettingAndObjectCounts) {
   using S = TypeParam;
   const auto hashAfter = [](auto&& change) {

@@ -12,7 +12,7 @@ namespace samestep {
 /// The broad phase: a spatial index that keeps, between calls, a tree of boxes and the sorted list of pairs
 /// that may touch. MIS section 15.
 ///
-/// The tree stores fat boxes: the tight box with room to move (a tenth of its size, and a tenth of a second
+/// The tree stores fat boxes: the tight box with room to move (a seventh of its size, or a fifth of a second
 /// of its velocity), plus a margin. Only a leaf that has left its room is put in again and paired anew.
 /// Everything here is a cache: which candidates appear beyond those whose tight boxes plus margin overlap
 /// depends on the history; those never do. Candidates come sorted, so the tree's shape never shows.

@@ -99,7 +99,13 @@ class Body {
   void setMassProperties(const MassProperties<S>& properties);
 
   /// The place of the body's origin, m. MIS: bodyGetPosition
-  Vector<S> position() const { return center_ - rotate(centerOfMass_, rotation_); }
+  Vector<S> position() const {
+    // The same bits where zero has no sign.
+    if constexpr (FixedNumber<S>) {
+      if (centerOfMass_ == Vector<S>()) return center_;
+    }
+    return center_ - rotate(centerOfMass_, rotation_);
+  }
   /// The place of its centre of mass, m.
   const Vector<S>& worldCenter() const { return center_; }
   /// The centre of mass in body coordinates, m. MIS: bodyGetCenterOfMass

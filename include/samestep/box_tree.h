@@ -84,25 +84,21 @@ class BoxTree {
   /// @throws InsufficientBufferSize if the tree is higher than it can be
   template <class Area, class Visit>
   void query(const Area& area, Visit&& visit) const {
-    search(kAnchor, area, visit);
+    Search search;
+    search.open[search.depth++] = kAnchor;
+    finish(search, area, visit);
   }
   /// Calls visit(other) for every other leaf whose box overlaps that of `key`; otherwise as query, and
   /// faster: from the leaf upwards only the boxes beside the path are compared. @pre contains(key)
   template <class Visit>
   void queryAround(Key key, Visit&& visit) const {
     const GridBox area = box(key);
-    for (Place place = places_[key]; place >> 1 != kAnchor;) {
-      const Node& node = nodes_[place >> 1];
-      const Place beside = 1 - (place & 1);
-      if (overlaps(area, node.box[beside])) {
-        if ((node.child[beside] & kLeaf) != 0) {
-          visit(node.child[beside] & ~kLeaf);
-        } else {
-          search(node.child[beside], area, visit);
-        }
-      }
-      place = node.parent;
+    Search search;
+    for (Place place = places_[key]; place >> 1 != kAnchor; place = nodes_[place >> 1].parent) {
+      search.look(nodes_[place >> 1], 1 - (place & 1), area);
+      search.check();
     }
+    finish(search, area, visit);
   }
 
   // The structure itself, for tests.
@@ -141,24 +137,45 @@ class BoxTree {
 
   static Node emptyNode();
 
-  template <class Area, class Visit>
-  void search(Ref start, const Area& area, Visit& visit) const {
-    Ref stack[kStackSize];
-    std::uint32_t depth = 1;
-    stack[0] = start;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      for (int side = 0; side < 2; ++side) {
-        if (!overlaps(area, node.box[side])) continue;
-        const Ref child = node.child[side];
-        if ((child & kLeaf) != 0) {
-          visit(child & ~kLeaf);
-        } else {
-          require<Fault::InsufficientBufferSize>(depth < kStackSize);
-          stack[depth++] = child;
-        }
-      }
+  /// What a search has still to look into, and what it has found. Whether a box overlaps is as good as
+  /// random, so a child is noted in any case, and kept by counting it.
+  struct Search {
+    // With room for what is noted and not kept.
+    Ref open[2 * kStackSize + 1];
+    Ref found[2 * kStackSize + 1];
+    std::uint32_t depth = 0;
+    std::uint32_t count = 0;
+
+    template <class Area>
+    [[gnu::always_inline]] void look(const Node& node, Place side, const Area& area) {
+      const Ref child = node.child[side];
+      const std::uint32_t hit = overlaps(area, node.box[side]) ? 1 : 0;
+      const std::uint32_t leaf = child >> 31;
+      found[count] = child & ~kLeaf;
+      count += hit & leaf;
+      open[depth] = child;
+      depth += hit & ~leaf;
     }
+    void check() const {
+      require<Fault::InsufficientBufferSize>(depth <= 2 * kStackSize - 1 && count <= 2 * kStackSize - 1);
+    }
+  };
+
+  template <class Area, class Visit>
+  void finish(Search& search, const Area& area, Visit& visit) const {
+    while (search.depth > 0) {
+      const Node& node = nodes_[search.open[--search.depth]];
+      search.look(node, 0, area);
+      search.look(node, 1, area);
+      if (search.count > kStackSize) tell(search, visit);
+      search.check();
+    }
+    tell(search, visit);
+  }
+  template <class Visit>
+  static void tell(Search& search, Visit& visit) {
+    for (std::uint32_t i = 0; i < search.count; ++i) visit(search.found[i]);
+    search.count = 0;
   }
 
   Ref newNode();

@@ -56,6 +56,40 @@ struct ShapeMassInfo {
   friend constexpr bool operator==(const ShapeMassInfo&, const ShapeMassInfo&) = default;
 };
 
+/// The places of a shape's vertices. A few stand in the list itself, which is enough for circles, segments,
+/// triangles and boxes; more take memory of their own, which no copy shares. Copying a list of as many or
+/// fewer into one takes no memory.
+template <Scalar S>
+class VertexList {
+ public:
+  static constexpr int kFew = 4;
+
+  VertexList() = default;
+  VertexList(const VertexList& other) { *this = other; }
+  VertexList(VertexList&& other) noexcept { swap(other); }
+  VertexList& operator=(const VertexList& other);
+  VertexList& operator=(VertexList&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~VertexList() { delete[] many_; }
+
+  /// Places that there are, at least kFew.
+  int room() const { return room_; }
+  /// Makes room for `count` vertices; what is there stays.
+  void makeRoom(int count);
+  const Vector<S>* data() const { return many_ == nullptr ? few_ : many_; }
+  Vector<S>* data() { return many_ == nullptr ? few_ : many_; }
+
+ private:
+  void swap(VertexList& other) noexcept;
+
+  Vector<S> few_[kFew];
+  Vector<S>* many_ = nullptr;
+  std::int32_t room_ = kFew;
+  std::int32_t unused_ = 0;  // Keeps the record free of padding.
+};
+
 template <Scalar S>
 class CircleShape;
 template <Scalar S>
@@ -156,13 +190,17 @@ class Shape {
 
   /// The geometry as stored. Circle: the centre. Segment: its ends, then the tangents towards its neighbours.
   /// Polygon: the vertices, counter-clockwise.
-  constexpr std::span<const Vector<S>> vertices() const { return {vertices_, count_}; }
+  std::span<const Vector<S>> vertices() const {
+    return {vertices_.data(), static_cast<std::size_t>(min<int>(count_, vertices_.room()))};
+  }
+  /// Of the canonical bytes, at most so many stand outside of the record.
+  static constexpr unsigned kBytesOutside = (kMaxPolyVertices - VertexList<S>::kFew) * sizeof(Vector<S>);
 
-  friend constexpr bool operator==(const Shape&, const Shape&) = default;
+  friend bool operator==(const Shape& a, const Shape& b) { return a.same(b); }
 
-  /// Visits every field that is state, in order, as visit(name, field). `Self` is Shape or const Shape. Past
-  /// the count the vertices are zero: a reader starts from a new Shape. The owner is no state: it names a
-  /// Space of this process; nor is the id, which says in which slot of the state the shape is.
+  /// Visits every field that is state, in order, as visit(name, field). `Self` is Shape or const Shape. The
+  /// owner is no state: it names a Space of this process; nor is the id, which says in which slot of the
+  /// state the shape is.
   template <class Self, class Visit>
   static constexpr void fields(Self& self, Visit&& visit) {
     visit("type", self.type_);
@@ -182,7 +220,9 @@ class Shape {
     visit("centroid", self.massInfo_.centroid);
     visit("unitMoment", self.massInfo_.unitMoment);
     visit("area", self.massInfo_.area);
-    for (int i = 0; i < min<int>(self.count_, kMaxPolyVertices); ++i) visit("vertex", self.vertices_[i]);
+    if constexpr (!std::is_const_v<Self>) self.vertices_.makeRoom(min<int>(self.count_, kMaxPolyVertices));
+    const int count = min<int>(self.count_, min(self.vertices_.room(), kMaxPolyVertices));
+    for (int i = 0; i < count; ++i) visit("vertex", self.vertices_.data()[i]);
   }
 
   /// Whether the record could have been made by the functions of this library, the ids and the surface apart:
@@ -199,6 +239,7 @@ class Shape {
   friend class SegmentShape<S>;
   friend class PolyShape<S>;
 
+  bool same(const Shape& other) const;
   void setGeometry(ShapeType type, std::span<const Vector<S>> vertices, S radius,
                    const ShapeMassInfo<S>& massInfo);
 
@@ -218,7 +259,7 @@ class Shape {
   ShapeType type_ = ShapeType::circle;
   std::uint8_t sensor_ = 0;
   std::uint8_t count_ = 1;
-  Vector<S> vertices_[kMaxPolyVertices];
+  VertexList<S> vertices_;
 };
 
 /// A point and a unit vector: of a polygon, a vertex and the outward normal of the edge that ends there.
@@ -231,24 +272,31 @@ struct Plane {
 /// The geometry of one shape where its body stands: what collide and the queries read. A cache, made from the
 /// shape by prepare and moved by place.
 template <Scalar S>
-struct PlacedShape {
-  BB<S> box;        ///< The smallest box around the shape, rounding included.
-  Plane<S> center;  ///< Circle: v0 is its centre in the world, n is where the body holds it.
-  /// Room for planeCount(shape) planes, given by the owner of the PlacedShape; the first half is the world's,
-  /// the second half the body's. Polygon: its planes. Segment: {a, -n}, {b, n}, {tangent at a, tangent at b}.
+struct alignas(64) PlacedShape {
+  BB<S> box;  ///< The smallest box around the shape, rounding included.
+  /// Room for planeCount(shape) planes, given by the owner of the PlacedShape, in the world. Polygon: its
+  /// planes. Segment: {a, -n}, {b, n}, {tangent at a, tangent at b}. Circle: v0 is its centre.
   Plane<S>* planes = nullptr;
+  /// The same planes where the body holds them; shapes of one geometry may share them.
+  const Plane<S>* local = nullptr;
   S radius{};
   ShapeType type = ShapeType::circle;
   std::uint8_t count = 1;  ///< Vertices: circle 1, segment 2.
+  /// Whether the second half of the local planes is the first half turned by 180 degrees.
+  bool halved = false;
+
+  /// Of a circle, in the world.
+  const Vector<S>& center() const { return planes[0].v0; }
 };
 
-/// How many planes a PlacedShape of this shape needs: 0 for a circle, at most 2 kMaxPolyVertices.
+/// How many planes a PlacedShape of this shape needs: at most kMaxPolyVertices.
 template <Scalar S>
 int planeCount(const Shape<S>& shape);
 
-/// Writes all that does not depend on the pose. `out.planes` must be set; call again when the shape changed.
+/// Writes what does not depend on the pose, and its planes as the body holds them to `local`, with room for
+/// planeCount(shape). `out.planes` must be set; call again when the shape changed.
 template <Scalar S>
-void prepare(const Shape<S>& shape, PlacedShape<S>& out);
+void prepare(const Shape<S>& shape, Plane<S>* local, PlacedShape<S>& out);
 
 /// Moves a prepared shape to where a rigid `pose` puts it and returns its new box. MIS: shapeUpdate
 template <Scalar S>
@@ -256,7 +304,7 @@ BB<S> place(const Transform<S>& pose, PlacedShape<S>& placed);
 
 /// Both: prepare, then place. MIS: shapeCacheBB
 template <Scalar S>
-BB<S> place(const Shape<S>& shape, const Transform<S>& pose, PlacedShape<S>& out);
+BB<S> place(const Shape<S>& shape, const Transform<S>& pose, Plane<S>* local, PlacedShape<S>& out);
 
 /// A placed shape with its own room: for a single test, where no Space keeps the planes.
 template <Scalar S>
@@ -264,7 +312,7 @@ class Placement {
  public:
   Placement(const Shape<S>& shape, const Transform<S>& pose) {
     placed_.planes = planes_;
-    place(shape, pose, placed_);
+    place(shape, pose, local_, placed_);
   }
   Placement(const Placement&) = delete;
   Placement& operator=(const Placement&) = delete;
@@ -273,7 +321,7 @@ class Placement {
   const PlacedShape<S>* operator->() const { return &placed_; }
 
  private:
-  Plane<S> planes_[2 * kMaxPolyVertices];
+  Plane<S> planes_[kMaxPolyVertices], local_[kMaxPolyVertices];
   PlacedShape<S> placed_;
 };
 
@@ -313,9 +361,9 @@ SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a
 #ifndef SAMESTEP_FIXED_ONLY
 extern template class Shape<double>;
 extern template int planeCount<double>(const Shape<double>&);
-extern template void prepare<double>(const Shape<double>&, PlacedShape<double>&);
+extern template void prepare<double>(const Shape<double>&, Plane<double>*, PlacedShape<double>&);
 extern template BB<double> place<double>(const Transform<double>&, PlacedShape<double>&);
-extern template BB<double> place<double>(const Shape<double>&, const Transform<double>&,
+extern template BB<double> place<double>(const Shape<double>&, const Transform<double>&, Plane<double>*,
                                          PlacedShape<double>&);
 extern template BB<double> boundingBox<double>(const Shape<double>&, const Transform<double>&);
 extern template PointQueryInfo<double> pointQuery<double>(const PlacedShape<double>&, const Vector<double>&);
@@ -325,20 +373,22 @@ extern template SegmentQueryInfo<double> segmentQuery<double>(const PlacedShape<
 #endif
 extern template class Shape<Fixed>;
 extern template int planeCount<Fixed>(const Shape<Fixed>&);
-extern template void prepare<Fixed>(const Shape<Fixed>&, PlacedShape<Fixed>&);
+extern template void prepare<Fixed>(const Shape<Fixed>&, Plane<Fixed>*, PlacedShape<Fixed>&);
 extern template BB<Fixed> place<Fixed>(const Transform<Fixed>&, PlacedShape<Fixed>&);
-extern template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, PlacedShape<Fixed>&);
+extern template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, Plane<Fixed>*,
+                                       PlacedShape<Fixed>&);
 extern template BB<Fixed> boundingBox<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&);
 extern template PointQueryInfo<Fixed> pointQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&);
 extern template SegmentQueryInfo<Fixed> segmentQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&,
                                                             const Vector<Fixed>&, Fixed);
 extern template class Shape<CheckedFixed>;
 extern template int planeCount<CheckedFixed>(const Shape<CheckedFixed>&);
-extern template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, PlacedShape<CheckedFixed>&);
+extern template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, Plane<CheckedFixed>*,
+                                           PlacedShape<CheckedFixed>&);
 extern template BB<CheckedFixed> place<CheckedFixed>(const Transform<CheckedFixed>&,
                                                      PlacedShape<CheckedFixed>&);
 extern template BB<CheckedFixed> place<CheckedFixed>(const Shape<CheckedFixed>&,
-                                                     const Transform<CheckedFixed>&,
+                                                     const Transform<CheckedFixed>&, Plane<CheckedFixed>*,
                                                      PlacedShape<CheckedFixed>&);
 extern template BB<CheckedFixed> boundingBox<CheckedFixed>(const Shape<CheckedFixed>&,
                                                            const Transform<CheckedFixed>&);

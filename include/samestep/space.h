@@ -33,11 +33,11 @@ enum class SolverKind : std::uint8_t {
 
 /// What the soft step computes contacts with, where the scalar leaves a choice.
 enum class ContactPrecision : std::uint8_t {
-  /// In the scalar itself.
+  /// To the unit of the scalar.
   accurate = 0,
-  /// Fixed: in integers of 32 bits, several at a time: the accuracy of a float, relative to the fastest body
-  /// that touches anything. A step in which a number would not fit is made accurately, see
-  /// Space::accurateInstead. Double: no difference.
+  /// Fixed: in integers of 32 bits, more at a time: the accuracy of a float, relative to the fastest body that
+  /// touches anything and to the largest impulse. A step in which a number would not fit is made accurately,
+  /// see Space::accurateInstead. Double: no difference.
   fast = 1,
 };
 
@@ -612,7 +612,7 @@ class Space {
   /// Places the shapes of what moved anew. MIS: shapeUpdateFunc
   void updateShapes();
   void findPairs();
-  void mergeNewPairs();
+  void movePairs(std::uint32_t count);
   void collidePairs();
   bool collidePairs(std::uint32_t begin, std::uint32_t end, bool surfacesKnown, CollisionStats& stats);
   /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.

@@ -5,8 +5,8 @@
 
 #include "contact_block.h"
 
-/// The integer kernels, whatever the vectors. Every rounding is to nearest, ties away from zero: mirror images
-/// stay mirror images.
+/// The integer kernels, whatever the vectors. Every rounding is to nearest, ties away from zero: mirror
+/// images stay mirror images.
 namespace samestep {
 namespace {
 
@@ -138,10 +138,10 @@ class WideLanes {
 
 /// All in 32 bits. `Vectors` gives the vector of 32-bit integers and Products, its products in 64 bits.
 ///
-/// What no sum may do is leave 32 bits unseen. Of what is checked, speeds and impulses are below 2^28, changes
-/// of impulses, ways and bends below 2^27, totals below 2^30; coefficients are at most 1, but for spins and
-/// friction below 8. Relative speeds are then below 2^30.5, separations below 2^30, limits below 2^31, and
-/// every product is kept whole until it is rounded.
+/// What no sum may do is leave 32 bits unseen. Of what is checked, speeds and impulses are below 2^28,
+/// changes of impulses, ways and bends below 2^27, totals below 2^30; coefficients are at most 1, but for
+/// spins and friction below 8. Relative speeds are then below 2^30.5, separations below 2^30, limits below
+/// 2^31, and every product is kept whole until it is rounded.
 template <class Vectors>
 class FastLanes {
  public:
@@ -198,7 +198,9 @@ class FastLanes {
                                           V h) {
     return over<Numbers::kUnitBits>((times(a, b) - times(c, d)) + (times(e, f) - times(g, h)));
   }
-  [[gnu::always_inline]] static V product(const C& unit, V x) { return over<Numbers::kUnitBits>(times(unit, x)); }
+  [[gnu::always_inline]] static V product(const C& unit, V x) {
+    return over<Numbers::kUnitBits>(times(unit, x));
+  }
   [[gnu::always_inline]] static V frictionLimit(const ContactBlock<Numbers>& block, const C& friction,
                                                 V sum) {
     const V limit = over<Numbers::kFrictionBits>(times(friction, sum));
@@ -210,7 +212,9 @@ class FastLanes {
   [[gnu::always_inline]] static V rate(V way, std::int32_t rate) {
     return FastLanes::rate(way, C(all(rate)));
   }
-  [[gnu::always_inline]] static V rate(V way, const C& rate) { return over<Numbers::kRateBits>(times(rate, way)); }
+  [[gnu::always_inline]] static V rate(V way, const C& rate) {
+    return over<Numbers::kRateBits>(times(rate, way));
+  }
   template <class Axis>
   [[gnu::always_inline]] static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, const C&,
                                         V change) {

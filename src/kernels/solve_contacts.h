@@ -3,9 +3,9 @@
 
 #include "contact_block.h"
 
-/// The pass over contact blocks, written once for every kernel. `L` says what a group of lanes is: its vectors
-/// of kWidth numbers, V of speeds and C of coefficients, and the operations on them. All of it has internal linkage, since each kernel is built
-/// with flags of its own.
+/// The pass over contact blocks, written once for every kernel. `L` says what a group of lanes is: its
+/// vectors of kWidth numbers, V of speeds and C of coefficients, and the operations on them. All of it has
+/// internal linkage, since each kernel is built with flags of its own.
 namespace samestep {
 namespace {
 
@@ -53,8 +53,8 @@ template <class L, bool kSprings, class N = typename L::Numbers>
       const V before = L::load(axis.sum + lane);
       const V limit = L::frictionLimit(block, friction, L::load(block.point[i].normal.sum + lane));
       const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
-      const V sum =
-          lanes.checked(L::within(before - L::product(L::coefficient(axis.mass + lane), speed), -limit, limit));
+      const V sum = lanes.checked(
+          L::within(before - L::product(L::coefficient(axis.mass + lane), speed), -limit, limit));
       L::store(axis.sum + lane, sum);
       const V change = lanes.checkedChange(sum - before);
       tangentSpeed = tangentSpeed + change;
@@ -64,8 +64,7 @@ template <class L, bool kSprings, class N = typename L::Numbers>
       L::note("soft step: friction limit", limit);
       L::note("soft step: relative speed", speed);
       if constexpr (!kSprings) {
-        L::store(rest.tangentTotal[i] + lane,
-                 lanes.checkedTotal(L::load(rest.tangentTotal[i] + lane) + sum));
+        L::store(rest.tangentTotal[i] + lane, lanes.checkedTotal(L::load(rest.tangentTotal[i] + lane) + sum));
       }
     }
   };
@@ -93,7 +92,8 @@ template <class L, bool kSprings, class N = typename L::Numbers>
         const V full = L::product(L::coefficient(axis.mass + lane), lanes.checked(speed + target));
         correction = L::select(free, full, L::soften(soft, full, before));
       } else {
-        correction = L::product(L::coefficient(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
+        correction =
+            L::product(L::coefficient(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
       }
       const V sum = lanes.checked(L::pushing(before - correction, constants));
       L::store(axis.sum + lane, sum);
@@ -105,8 +105,7 @@ template <class L, bool kSprings, class N = typename L::Numbers>
       L::note("soft step: relative speed", speed);
       L::note("soft step: target speed", gap);
       if constexpr (!kSprings) {
-        L::store(rest.normalTotal[i] + lane,
-                 lanes.checkedTotal(L::load(rest.normalTotal[i] + lane) + sum));
+        L::store(rest.normalTotal[i] + lane, lanes.checkedTotal(L::load(rest.normalTotal[i] + lane) + sum));
       }
     }
   };
