@@ -22,12 +22,14 @@ ContactPasses<N> passesFor(KernelTarget target) {
     if constexpr (!S::kChecks) {
       if (target == KernelTarget::avx2 && kernels::wideAvx2 != nullptr) return *kernels::wideAvx2;
       if (target == KernelTarget::neon && kernels::wideNeon != nullptr) return *kernels::wideNeon;
+      if (target == KernelTarget::simd128 && kernels::wideSimd128 != nullptr) return *kernels::wideSimd128;
       if (target == KernelTarget::sse42 && kernels::wideSse42 != nullptr) return *kernels::wideSse42;
     }
     return kPassesOf<WideScalarLanes<S>>;
   } else if constexpr (std::same_as<N, FastNumbers>) {
     if (target == KernelTarget::avx2 && kernels::fastAvx2 != nullptr) return *kernels::fastAvx2;
     if (target == KernelTarget::neon && kernels::fastNeon != nullptr) return *kernels::fastNeon;
+    if (target == KernelTarget::simd128 && kernels::fastSimd128 != nullptr) return *kernels::fastSimd128;
     if (target == KernelTarget::sse42 && kernels::fastSse42 != nullptr) return *kernels::fastSse42;
     return kernels::fastBy1;
   } else if constexpr (FixedNumber<S>) {
@@ -83,7 +85,7 @@ PairResponse<S> respondWith(const Body<S>& a, S momentPerMassA, const Body<S>& b
 /// How often springs are solved once more where something strikes.
 constexpr int kMorePasses = 2;
 
-/// The largest inverse moment by the squared radius that integers hold, in units of spins: 16 and more.
+/// The largest inverse moment by the squared radius that a pair holds, in units of spins: 32 and more.
 constexpr std::int64_t kMostMoment = std::int64_t{1} << 32;
 
 /// factor * x / 2^bits of an impulse.
@@ -191,7 +193,7 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
     const SoftStart<S>& from = starts[i];
     if constexpr (kIntegers) {
       const int perRadius = 32 - N::kSpinBits - 2 * units_.radius(from.radiusBits);
-      moments_[i] = min(units::shifted(from.momentPerMass.raw(), perRadius), kMostMoment + 1);
+      moments_[i] = min(units::shifted(from.momentPerMass.raw(), perRadius), std::int64_t{1} << 44);
     }
     SoftBody<N>& body = bodies_[i];
     SoftDrive<N>& drive = drives_[i];
@@ -374,11 +376,11 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
     const std::int32_t shareB = (1 << N::kUnitBits) - share;
     const std::int64_t momentA = response.momentA == S(0) ? 0 : moments_[indexA];
     const std::int64_t momentB = response.momentB == S(0) ? 0 : moments_[indexB];
-    if (momentA > kMostMoment || momentB > kMostMoment) return false;
-    const IntegerSide<S, N> sideA(nA, a.centerOfMass(), (*starts_)[indexA].radiusBits,
-                                  units::scaled<N::kUnitBits>(share, momentA));
-    const IntegerSide<S, N> sideB(nB, b.centerOfMass(), (*starts_)[indexB].radiusBits,
-                                  units::scaled<N::kUnitBits>(shareB, momentB));
+    const std::int64_t byA = units::scaled<N::kUnitBits>(share, momentA);
+    const std::int64_t byB = units::scaled<N::kUnitBits>(shareB, momentB);
+    if (max(byA, byB) > kMostMoment) return false;
+    const IntegerSide<S, N> sideA(nA, a.centerOfMass(), (*starts_)[indexA].radiusBits, byA);
+    const IntegerSide<S, N> sideB(nB, b.centerOfMass(), (*starts_)[indexB].radiusBits, byB);
     std::int64_t normalPart = 0, tangentPart = 0, turnA = 0, turnB = 0;
     for (int i = 0; i < pair.count; ++i) {
       const Contact<S>& contact = pair.contacts[i];
@@ -598,10 +600,11 @@ std::uint64_t BlockSolver<S, N>::integratePositions(std::uint32_t begin, std::ui
       }
       if constexpr (std::same_as<N, WideNumbers>) {
         const int perRadius = units_.finer() + units_.radius((*starts_)[i].radiusBits);
-        const S angle = S::fromRaw(units::shifted(body.moved[2], perRadius));
+        const S angle = clamp(S::fromRaw(units::shifted(body.moved[2], perRadius)), S(-1), S(1));
         body.moved[3] = min(angle * angle * half, most).raw() << perRadius;
       } else {
-        body.moved[3] = min(body.moved[2] * body.moved[2] * half, most);
+        const S angle = clamp(body.moved[2], S(-1), S(1));
+        body.moved[3] = min(angle * angle * half, most);
       }
     }
   }

@@ -43,9 +43,9 @@ struct FastNumbers : IntegerUnits {
   static constexpr int kLanes = 8;
   using Speed = std::int32_t;
   using Sum = std::int32_t;
-  static constexpr int kSpinBits = 28, kFrictionBits = 28;
-  /// What speeds and impulses must stay below in size, half of it what ways and changes of impulses must:
-  /// then no sum leaves 32 bits.
+  static constexpr int kSpinBits = 27, kFrictionBits = 28;
+  /// What speeds and impulses must stay below in size, half of it what ways must, a quarter what changes of
+  /// impulses must: then no sum leaves 32 bits.
   static constexpr std::int32_t kRange = 1 << 28;
 };
 

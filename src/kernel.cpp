@@ -21,6 +21,7 @@ struct Available {
     }
 #endif
     if (kernels::fastNeon != nullptr) targets[count++] = KernelTarget::neon;
+    if (kernels::fastSimd128 != nullptr) targets[count++] = KernelTarget::simd128;
   }
 };
 
@@ -38,6 +39,8 @@ const char* kernelName(KernelTarget target) {
       return "avx2";
     case KernelTarget::neon:
       return "neon";
+    case KernelTarget::simd128:
+      return "simd128";
   }
   return "?";
 }

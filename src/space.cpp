@@ -643,7 +643,7 @@ TaskRunner* Space<S>::workers() const {
 template <Scalar S>
 void Space<S>::setKernel(KernelTarget target) {
   requireUnlocked();
-  require<Fault::ValueOutOfRange>(target <= KernelTarget::neon);
+  require<Fault::ValueOutOfRange>(target <= KernelTarget::simd128);
   if (!isAvailable(target)) {
     remarks_.raise(Remark::OtherKernel,
                    "This build or this processor does not have that kernel: the next best one is taken. No "

@@ -34,7 +34,9 @@ struct ShapeTraits {
   std::uint32_t body = 0;
   ShapeFilter filter{};
   std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
-  S extent{};              ///< The same, exactly.
+  /// Of the circle around the shape whose centre is the shape's centroid, in the body's coordinates.
+  Vector<S> center{};
+  S radius{};
   bool sensor = false;
   bool round = false;    ///< A circle.
   bool rounded = false;  ///< Has a radius: its surface may roll.
@@ -44,10 +46,21 @@ struct ShapeTraits {
             shape.body().index,
             shape.filter(),
             static_cast<std::int32_t>(shape.extent()) + 1,
-            shape.extent(),
+            shape.massInfo().centroid,
+            radiusAround(shape.massInfo().centroid, shape),
             shape.sensor(),
             shape.type() == ShapeType::circle,
             shape.radius() != S(0)};
+  }
+
+ private:
+  static S radiusAround(const Vector<S>& center, const Shape<S>& shape) {
+    const auto vertices = shape.vertices();
+    S most = S(0);
+    for (const Vector<S>& vertex : shape.type() == ShapeType::segment ? vertices.first(2) : vertices) {
+      most = max(most, length(vertex - center));
+    }
+    return most + shape.radius();
   }
 };
 

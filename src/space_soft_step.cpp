@@ -12,12 +12,12 @@ namespace {
 /// The power of two metres that nothing of a body is beyond, seen from its centre of mass.
 template <Scalar S, class Impl>
 int radiusBits(const Impl& impl, std::uint32_t index, const Body<S>& body) {
-  S extent = S(0);
+  S most = S(0);
   for (std::uint32_t i = impl.firstShape[index]; i != Impl::kNone; i = impl.nextShape[i]) {
-    extent = max(extent, impl.traits[i].extent);
+    const ShapeTraits<S>& shape = impl.traits[i];
+    const Vector<S> aside = shape.center - body.centerOfMass();
+    most = max(most, shape.radius + (abs(aside.x) + abs(aside.y)));
   }
-  const Vector<S> center = body.centerOfMass();
-  const S most = extent + (abs(center.x) + abs(center.y));
   return most == S(0) ? 0 : static_cast<int>(std::bit_width(raw::magnitude(most.raw()) - 1)) - 32;
 }
 

@@ -205,6 +205,7 @@ NamedPasses<WideNumbers> wideKernels() {
   if (isAvailable(KernelTarget::sse42)) all.emplace_back("sse42", kernels::wideSse42);
   if (isAvailable(KernelTarget::avx2)) all.emplace_back("avx2", kernels::wideAvx2);
   if (isAvailable(KernelTarget::neon)) all.emplace_back("neon", kernels::wideNeon);
+  if (isAvailable(KernelTarget::simd128)) all.emplace_back("simd128", kernels::wideSimd128);
   return all;
 }
 
@@ -213,6 +214,7 @@ NamedPasses<FastNumbers> fastKernels() {
   if (isAvailable(KernelTarget::sse42)) all.emplace_back("sse42", kernels::fastSse42);
   if (isAvailable(KernelTarget::avx2)) all.emplace_back("avx2", kernels::fastAvx2);
   if (isAvailable(KernelTarget::neon)) all.emplace_back("neon", kernels::fastNeon);
+  if (isAvailable(KernelTarget::simd128)) all.emplace_back("simd128", kernels::fastSimd128);
   return all;
 }
 

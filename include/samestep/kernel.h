@@ -17,11 +17,14 @@ enum class KernelTarget : std::uint8_t {
   avx2 = 3,
   /// 64-bit ARM.
   neon = 4,
+  /// WebAssembly, built with -msimd128.
+  simd128 = 5,
 };
-inline constexpr KernelTarget kKernelTargets[] = {
-    KernelTarget::best, KernelTarget::portable, KernelTarget::sse42, KernelTarget::avx2, KernelTarget::neon};
+inline constexpr KernelTarget kKernelTargets[] = {KernelTarget::best,  KernelTarget::portable,
+                                                  KernelTarget::sse42, KernelTarget::avx2,
+                                                  KernelTarget::neon,  KernelTarget::simd128};
 
-/// "best", "portable", "sse42", "avx2", "neon".
+/// "best", "portable", "sse42", "avx2", "neon", "simd128".
 const char* kernelName(KernelTarget target);
 /// The target of a name; false if there is none, and `target` stays as it is.
 bool findKernel(std::string_view name, KernelTarget& target);

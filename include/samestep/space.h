@@ -35,9 +35,9 @@ enum class SolverKind : std::uint8_t {
 enum class ContactPrecision : std::uint8_t {
   /// To the unit of the scalar.
   accurate = 0,
-  /// Fixed: in integers of 32 bits, more at a time: the accuracy of a float, relative to the fastest body that
-  /// touches anything and to the largest impulse. A step in which a number would not fit is made accurately,
-  /// see Space::accurateInstead. Double: no difference.
+  /// Fixed: in integers of 32 bits, more at a time: the accuracy of a float, relative to the fastest body
+  /// that touches anything and to the largest impulse. A step in which a number would not fit is made
+  /// accurately, see Space::accurateInstead. Double: no difference.
   fast = 1,
 };
 

@@ -236,7 +236,7 @@ class FastLanes {
     return v;
   }
   [[gnu::always_inline]] V checkedChange(V v) {
-    left_ = left_ | (v + v + Numbers::kRange);
+    left_ = left_ | ((v << 2) + Numbers::kRange);
     return v;
   }
   [[gnu::always_inline]] V checkedTotal(V v) {

@@ -21,5 +21,8 @@ extern const ContactPasses<WideNumbers>* const wideAvx2;
 /// Every processor of 64-bit ARM can run these.
 extern const ContactPasses<FastNumbers>* const fastNeon;
 extern const ContactPasses<WideNumbers>* const wideNeon;
+/// A WebAssembly build has these or has them not; an engine without them refuses the whole module.
+extern const ContactPasses<FastNumbers>* const fastSimd128;
+extern const ContactPasses<WideNumbers>* const wideSimd128;
 
 }  // namespace samestep::kernels

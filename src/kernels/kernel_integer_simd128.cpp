@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#include "kernels.h"
+
+#ifdef __wasm_simd128__
+#include "integers_simd128.h"
+#include "solve_contacts.h"
+
+namespace samestep::kernels {
+
+const ContactPasses<FastNumbers>* const fastSimd128 = &kPassesOf<FastLanes<FastSimd128>>;
+const ContactPasses<WideNumbers>* const wideSimd128 = &kPassesOf<WideLanes<WideSimd128>>;
+
+}  // namespace samestep::kernels
+#else
+namespace samestep::kernels {
+
+const ContactPasses<FastNumbers>* const fastSimd128 = nullptr;
+const ContactPasses<WideNumbers>* const wideSimd128 = nullptr;
+
+}  // namespace samestep::kernels
+#endif
