@@ -371,10 +371,11 @@ void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown, CollisionStats& st
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
   }
   pair.age = 0;
-  const bool belt = shapeA.surface.velocity != shapeB.surface.velocity;
+  const Surface<S>&surfaceA = impl.surfaces[shapeA.surface], &surfaceB = impl.surfaces[shapeB.surface];
+  const bool belt = surfaceA.velocity != surfaceB.velocity;
   if (!same || !surfacesKnown || belt) {
     const Vector<S> normal = belt ? rotate(pair.localNormal, bodyA.frame.rotation) : Vector<S>();
-    takeSurfaces(pair, shapeA.surface, shapeB.surface, normal);
+    takeSurfaces(pair, surfaceA, surfaceB, normal);
   }
   const bool wanted = applyCollision(pair);
   const bool moves = bodyA.type == BodyType::dynamicBody || bodyB.type == BodyType::dynamicBody;
