@@ -313,9 +313,7 @@ void checkChecked(const CollisionInfo<Fixed>& expected) {
 void snap(Scene<Fixed>& scene, std::uint64_t how) {
   const PlacedShape<Fixed>&a = scene.a.at(transformOf<Fixed>(current.poseA)),
         &b = scene.b.at(transformOf<Fixed>(current.poseB));
-  const auto vertex = [](const PlacedShape<Fixed>& shape, int i) {
-    return shape.planes[i % shape.count].v0;
-  };
+  const auto vertex = [](const PlacedShape<Fixed>& shape, int i) { return shape.planes[i % shape.count].v0; };
   const int i = byteOf(how, 0), j = byteOf(how, 1);
   Vector<Fixed> goal = vertex(a, i);
   if ((byteOf(how, 2) & 1) != 0) goal = lerp(goal, vertex(a, i + 1), Fixed::ratio(byteOf(how, 3), 256));

@@ -461,7 +461,7 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
   impl_->surfacesKnown = false;
   kept = next;
   ensureCache();
-  impl_->traits[id.index] = ShapeTraits<S>::of(kept);
+  impl_->takeTraits(id.index, kept);
   if (!sameGeometry) {
     forgetManifolds(id);
     impl_->prepareShape(id.index, kept);

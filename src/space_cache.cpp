@@ -62,6 +62,7 @@ void SpaceCache<S>::copyFrom(const SpaceCache& other) {
   nextShape = other.nextShape;
   placed = other.placed;
   traits = other.traits;
+  surfaces = other.surfaces;
   surfacesKnown = other.surfacesKnown;
   leftMidway = other.leftMidway;
   planeOffset = other.planeOffset;
@@ -93,7 +94,7 @@ std::uint64_t SpaceCache<S>::bytes() const {
   if (!cached) return 0;
   return of(poses, firstShape, lastShape, nextShape, placed, traits, planeOffset, planes, touched, isTouched,
             planeRoom, geometry) +
-         localPlanes.bytes() + staticTree.bytes() + dynamicTree.bytes();
+         localPlanes.bytes() + surfaces.bytes() + staticTree.bytes() + dynamicTree.bytes();
 }
 
 template <Scalar S>
@@ -199,7 +200,7 @@ void Space<S>::Impl::prepareShape(std::uint32_t index, const Shape<S>& shape) {
   const std::uint32_t count = static_cast<std::uint32_t>(planeCount(shape));
   Plane<S> local[kMaxPolyVertices];
   prepare(shape, local, placed[index]);
-  traits[index] = ShapeTraits<S>::of(shape);
+  takeTraits(index, shape);
   const Plane<S>* const before = planes.data();
   const Plane<S>* const localBefore = localPlanes.data();
   localPlanes.release(geometry[index]);
@@ -212,6 +213,16 @@ void Space<S>::Impl::prepareShape(std::uint32_t index, const Shape<S>& shape) {
   if (planes.data() != before || localPlanes.data() != localBefore) this->usePlanes();
   placed[index].planes = planes.data() + planeOffset[index];
   placed[index].local = localPlanes.of(geometry[index]);
+}
+
+template <Scalar S>
+void Space<S>::Impl::takeTraits(std::uint32_t index, const Shape<S>& shape) {
+  traits[index] = ShapeTraits<S>::of(shape, surfaces.number(Surface<S>::of(shape)));
+  if (!surfaces.tooMany(traits.size())) return;
+  // What shapes no longer have is forgotten.
+  Surfaces<S> anew;
+  for (ShapeTraits<S>& each : traits) each.surface = anew.number(surfaces[each.surface]);
+  surfaces = std::move(anew);
 }
 
 template <Scalar S>
@@ -250,6 +261,7 @@ void Space<S>::ensureCache() const {
   impl.nextShape.assign(state_.shapes.slots(), Impl::kNone);
   impl.placed.assign(state_.shapes.slots(), {});
   impl.traits.assign(state_.shapes.slots(), {});
+  impl.surfaces.clear();
   impl.surfacesKnown = false;
   impl.planeOffset.assign(state_.shapes.slots(), 0);
   impl.planeRoom.assign(state_.shapes.slots(), 0);

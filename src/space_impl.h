@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,10 +29,35 @@ struct PlacedPose {
   friend bool operator==(const PlacedPose&, const PlacedPose&) = default;
 };
 
+/// The surfaces of shapes. Most worlds have few, and shapes of one in a row: what pairs ask about shapes
+/// takes half the memory without them.
+template <Scalar S>
+class Surfaces {
+ public:
+  void clear() { surfaces_.clear(); }
+  /// The number of a surface.
+  std::uint32_t number(const Surface<S>& surface) {
+    // By bits: zeros of two signs are equal, and not the same.
+    const bool same = !surfaces_.empty() && std::memcmp(&surfaces_.back(), &surface, sizeof(Surface<S>)) == 0;
+    if (!same) surfaces_.push_back(surface);
+    return static_cast<std::uint32_t>(surfaces_.size() - 1);
+  }
+  const Surface<S>& operator[](std::uint32_t number) const { return surfaces_[number]; }
+  /// Whether there are so many more than shapes that they should be counted anew.
+  bool tooMany(std::size_t shapes) const { return surfaces_.size() > 2 * shapes + 64; }
+  /// Of memory that a copy takes.
+  std::uint64_t bytes() const { return surfaces_.size() * sizeof(Surface<S>); }
+
+ private:
+  static_assert(std::is_trivially_copyable_v<Surface<S>> && sizeof(Surface<S>) == 4 * sizeof(S));
+
+  std::vector<Surface<S>> surfaces_;
+};
+
 /// What pairs ask about a shape, close together.
 template <Scalar S>
 struct ShapeTraits {
-  Surface<S> surface{};
+  std::uint32_t surface = 0;  ///< Its number.
   std::uint32_t body = 0;
   ShapeFilter filter{};
   std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
@@ -41,8 +68,8 @@ struct ShapeTraits {
   bool round = false;    ///< A circle.
   bool rounded = false;  ///< Has a radius: its surface may roll.
 
-  static ShapeTraits of(const Shape<S>& shape) {
-    return {Surface<S>::of(shape),
+  static ShapeTraits of(const Shape<S>& shape, std::uint32_t surface) {
+    return {surface,
             shape.body().index,
             shape.filter(),
             static_cast<std::int32_t>(shape.extent()) + 1,
@@ -116,6 +143,7 @@ struct SpaceCache {
   std::vector<std::uint32_t> nextShape;
   std::vector<PlacedShape<S>> placed;
   std::vector<ShapeTraits<S>> traits;
+  Surfaces<S> surfaces;
   // Whether the surfaces in all pairs that touched in the last step are those of the shapes.
   bool surfacesKnown = false;
   std::vector<std::uint32_t> planeOffset;
@@ -140,7 +168,8 @@ struct Space<S>::Impl : SpaceCache<S> {
   using SpaceCache<S>::poses, SpaceCache<S>::firstShape, SpaceCache<S>::lastShape, SpaceCache<S>::nextShape,
       SpaceCache<S>::placed, SpaceCache<S>::planeOffset, SpaceCache<S>::planes, SpaceCache<S>::touched,
       SpaceCache<S>::isTouched, SpaceCache<S>::planeRoom, SpaceCache<S>::traits, SpaceCache<S>::staticTree,
-      SpaceCache<S>::dynamicTree, SpaceCache<S>::localPlanes, SpaceCache<S>::geometry;
+      SpaceCache<S>::dynamicTree, SpaceCache<S>::localPlanes, SpaceCache<S>::geometry,
+      SpaceCache<S>::surfaces;
 
   // Wiring: who is told. By rising number.
   template <class Function>
@@ -268,6 +297,7 @@ struct Space<S>::Impl : SpaceCache<S> {
   void linkShape(std::uint32_t body, std::uint32_t shape);
   void unlinkShape(std::uint32_t body, std::uint32_t shape);
   void prepareShape(std::uint32_t index, const Shape<S>& shape);
+  void takeTraits(std::uint32_t index, const Shape<S>& shape);
 };
 
 /// One function of each further file that defines members of Space, for space.cpp to refer to. Under gcc's

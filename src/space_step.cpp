@@ -177,8 +177,9 @@ std::uint64_t sortKey(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a
 template <Scalar S>
 [[gnu::always_inline]] inline bool nearBoxes(const BB<S>& a, S margin, const BB<S>& b) {
   const BB<S> grown = inflate(a, margin);
-  return static_cast<bool>((grown.left <= b.right) & (b.left <= grown.right) & (grown.bottom <= b.top) &
-                           (b.bottom <= grown.top));
+  const int across = int{grown.left <= b.right} & int{b.left <= grown.right};
+  const int up = int{grown.bottom <= b.top} & int{b.bottom <= grown.top};
+  return (across & up) != 0;
 }
 
 }  // namespace
@@ -371,10 +372,11 @@ void Space<S>::collidePair(Pair<S>& pair, bool surfacesKnown, CollisionStats& st
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
   }
   pair.age = 0;
-  const bool belt = shapeA.surface.velocity != shapeB.surface.velocity;
+  const Surface<S>&surfaceA = impl.surfaces[shapeA.surface], &surfaceB = impl.surfaces[shapeB.surface];
+  const bool belt = surfaceA.velocity != surfaceB.velocity;
   if (!same || !surfacesKnown || belt) {
     const Vector<S> normal = belt ? rotate(pair.localNormal, bodyA.frame.rotation) : Vector<S>();
-    takeSurfaces(pair, shapeA.surface, shapeB.surface, normal);
+    takeSurfaces(pair, surfaceA, surfaceB, normal);
   }
   const bool wanted = applyCollision(pair);
   const bool moves = bodyA.type == BodyType::dynamicBody || bodyB.type == BodyType::dynamicBody;

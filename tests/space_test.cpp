@@ -200,6 +200,31 @@ TYPED_TEST(SpaceTest, BodiesLeaveEmptyAndNeverTheDesignatedOne) {
   EXPECT_EQ(space.bodyCount(), 1u);
 }
 
+TYPED_TEST(SpaceTest, AFrictionThatChangesInEveryStepIsThatOfItsShapeAloneAndTakesNoMemory) {
+  using S = TypeParam;
+  Space<S> space;
+  space.setGravity({S(0), S(-10)});
+  const ShapeId floor = addWall<S>(space, {S(-20), S(0)}, {S(20), S(0)});
+  space.change(floor, [](Shape<S>& shape) { shape.setFriction(S(1)); });
+  std::vector<ShapeId> boxes;
+  for (int i = 0; i < 3; ++i) {
+    boxes.push_back(addBox<S>(space, {S(4 * i), ratio<S>(1, 2)}, S(1), S(1), S(1)));
+    space.change(boxes.back(), [](Shape<S>& shape) { shape.setFriction(ratio<S>(1, 2)); });
+  }
+  std::uint64_t bytes = 0;
+  for (int step = 0; step < 400; ++step) {
+    const S friction = ratio<S>(step, 400);
+    space.change(boxes[1], [&](Shape<S>& shape) { shape.setFriction(friction); });
+    space.step(kTick<S>);
+    ASSERT_EQ(space.state().pairs.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_EQ(space.state().pairs[i].friction, i == 1 ? friction : ratio<S>(1, 2));
+    }
+    if (step == 200) bytes = space.save().bytes();
+  }
+  EXPECT_LE(space.save().bytes(), bytes + bytes / 2);
+}
+
 TYPED_TEST(SpaceTest, AShapeThatChangesOrGoesLeavesItsEqualsAsTheyAre) {
   using S = TypeParam;
   Space<S> space;
