@@ -218,7 +218,7 @@ class SoftUnits<S, N> {
   static constexpr int kSpeedBits = kWide ? 61 : 28;
   static constexpr std::int64_t kMost = (std::int64_t{1} << kSpeedBits) - 1;
   /// Room that speeds have for growing within the step: contacts push, and a difference is twice as large.
-  static constexpr int kSpareBits = 4;
+  static constexpr int kSpareBits = 3;
   /// Speeds of less than 1 m/s get no finer; none are coarser than a millimetre in four seconds.
   static constexpr int kMostSpeedBits = 24, kLeastSpeedBits = 12;
   /// A step of less than 2^-14 s has no finer ways.
