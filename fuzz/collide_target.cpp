@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include <samestep/limits.h>
 
@@ -17,6 +18,7 @@ namespace {
 struct Case {
   ShapePlan shapeA, shapeB;
   PosePlan poseA, poseB;
+  bool same = false;  ///< Whether B is the same shape as A.
   Fixed margin{};
   CollisionId start = 0;
   std::uint64_t choice = 0;  ///< Which of the dearer checks are made.
@@ -80,8 +82,9 @@ void describe() {
   }
 }
 
-/// Faces that lie this flat on each other count as one: collide takes the first shape's.
-constexpr double kFlat = 0x1p-20;
+/// Faces that lie 2^-20 m flat on each other count as one: collide takes the first shape's. It compares them
+/// by places cut to 2^-22 m, which for two faces adds up to as much again.
+constexpr double kFlat = 0x1p-19;
 /// Where the Minkowski difference is thinner than this part of its size, double makes no promise.
 constexpr double kThin = 0x1p-20;
 /// Nor where an edge is shorter than this part.
@@ -139,13 +142,6 @@ double width(const Cores<S>& cores, const CollisionInfo<S>& info) {
 }
 constexpr double kNeedle = 0x1p-10;
 
-/// Whether a segment or needle is among the shapes that points at the other without a margin of its own: its
-/// tip may be lost between the two points that are looked at.
-template <Scalar S>
-bool mayMiss(const PlacedShape<S>& a, const PlacedShape<S>& b) {
-  return a.type != ShapeType::circle && b.type != ShapeType::circle;
-}
-
 /// What holds for every answer, whatever the features are.
 template <Scalar S>
 void checkAnswer(const Cores<S>& cores, const BruteAnswer& brute, const PlacedShape<S>& a,
@@ -156,8 +152,8 @@ void checkAnswer(const Cores<S>& cores, const BruteAnswer& brute, const PlacedSh
   remember(info);
   expect(info.count >= 0 && info.count <= kMaxContactsPerPair, "at most two points");
   if (info.count == 0) {
-    if (!hasNeighbors() && !mayMiss(a, b)) {
-      expectAtMost(reach - bounds.place, brute.distance, "shapes in reach touch");
+    if (!hasNeighbors()) {
+      expectAtMost(reach - bounds.place - bounds.flat, brute.distance, "shapes in reach touch");
     }
     return;
   }
@@ -209,17 +205,41 @@ bool sameTouch(const CollisionInfo<S>& a, const CollisionInfo<S>& b, bool featur
   return true;
 }
 
-/// Whether a shape is a segment that points along the normal, nearly, or a polygon like dust: rounding then
-/// decides which side is towards the other shape.
+/// Whether two vertices lie hardly farther apart than the places that faces are searched by: which of them is
+/// the nearest, is then a matter of rounding.
+bool isDust(const Cores<Fixed>& cores) { return cores.shortest < 0x1p-16; }
+/// Whether a shape is a segment that points along the normal, nearly: rounding then decides which side is
+/// towards the other shape.
 bool hasNoSide(const PlacedShape<Fixed>& shape, const Vector<Fixed>& normal) {
-  if (shape.type == ShapeType::circle) return false;
-  if (shape.type == ShapeType::poly) {
-    return shape.box.right - shape.box.left < Fixed(0x1p-12) &&
-           shape.box.top - shape.box.bottom < Fixed(0x1p-12);
-  }
+  if (shape.type != ShapeType::segment) return false;
   const Vector<Fixed> edge = shape.planes[1].v0 - shape.planes[0].v0;
   return std::fabs(static_cast<double>(cross(edge, normal))) <
          std::max(16 * 0x1p-32, 0x1p-20 * static_cast<double>(length(edge)));
+}
+
+/// Whether the ends of two facing edges that make a point lie opposite each other to some units: rounding
+/// then decides which of them the point is at.
+bool endsMeet(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b, const CollisionInfo<Fixed>& info) {
+  if (a.type == ShapeType::circle || b.type == ShapeType::circle) return false;
+  for (int i = 0; i < info.count; ++i) {
+    const std::uint32_t hash = info.points[i].hash;
+    const Vector<Fixed> apart = b.planes[hash & 0xffff].v0 - a.planes[hash >> 16].v0;
+    if (std::fabs(static_cast<double>(cross(apart, info.normal))) <= 16 * 0x1p-32) return true;
+  }
+  return false;
+}
+bool nearTouch(const CollisionInfo<Fixed>& a, const CollisionInfo<Fixed>& b, double tolerance) {
+  if (a.count != b.count || (a.count > 0 && a.normal != b.normal)) return false;
+  const auto near = [&](const Vector<Fixed>& p, const Vector<Fixed>& q) {
+    return std::fabs(static_cast<double>(p.x - q.x)) <= tolerance &&
+           std::fabs(static_cast<double>(p.y - q.y)) <= tolerance;
+  };
+  for (int i = 0; i < a.count; ++i) {
+    if (!near(a.points[i].pointA, b.points[i].pointA) || !near(a.points[i].pointB, b.points[i].pointB)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// Where an edge lies across the normal, which side of it counts depends on the order: the names may differ.
@@ -252,8 +272,15 @@ struct Scene {
   Placed<S> a, b, otherA, otherB;
 
   bool make() {
-    const auto shapeA = build<S>(current.shapeA), shapeB = build<S>(current.shapeB);
-    if (!shapeA || !shapeB) return false;
+    const auto shapeA = build<S>(current.shapeA);
+    if (!shapeA) return false;
+    const bool same = current.same;
+    const auto shapeB = same ? shapeA : build<S>(current.shapeB);
+    if (!shapeB) return false;
+    if constexpr (std::is_same_v<S, Fixed>) {
+      resolve(current.shapeA, *shapeA);
+      resolve(current.shapeB, *shapeB);
+    }
     for (Placed<S>* placed : {&a, &otherA}) placed->prepare(*shapeA);
     for (Placed<S>* placed : {&b, &otherB}) placed->prepare(*shapeB);
     return true;
@@ -329,7 +356,8 @@ void run(Input& input, std::uint64_t choice) {
   const std::uint64_t head = input.word();
   current = {};
   current.shapeA = readShape(input);
-  current.shapeB = (head & 1) != 0 ? current.shapeA : readShape(input);
+  current.same = (head & 1) != 0;
+  current.shapeB = current.same ? current.shapeA : readShape(input);
   current.poseA = readPose(input, nullptr);
   current.poseB = readPose(input, &current.poseA);
   constexpr Fixed kMargins[] = {Fixed(0), Fixed(0), Fixed::ratio(1, 50), Fixed(1)};
@@ -371,8 +399,10 @@ void run(Input& input, std::uint64_t choice) {
     expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
                      std::fabs(static_cast<double>(back.normal.y - info.normal.y)),
                  info.count == 0 ? 1e300 : turnedBy, "exchanging the shapes turns the normal round");
-    expect(brute.distance >= 0 || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
-               sameTouch(back, info, false) || sameTouch(exchanged(turned, a.type != b.type), info, false),
+    expect(brute.distance >= 0 || isDust(cores) || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
+               sameTouch(back, info, false) || sameTouch(exchanged(turned, a.type != b.type), info, false) ||
+               (endsMeet(a, b, info) && (nearTouch(back, info, bounds.place) ||
+                                         nearTouch(exchanged(turned, a.type != b.type), info, bounds.place))),
            "exchanging the shapes exchanges the points");
   }
 
@@ -396,9 +426,15 @@ void run(Input& input, std::uint64_t choice) {
   // Turned by a quarter about the origin: exact but for the axes of last resort.
   const Transform<Fixed> quarter(Fixed(0), Fixed(1), Fixed(-1), Fixed(0), Fixed(0), Fixed(0));
   if (chosen(Choice::turn) && decided) {
-    const CollisionInfo<Fixed> rotated =
-        touch(scene.otherA.at(quarter * poseA), scene.otherB.at(quarter * poseB));
-    expect(sameTouch(rotated, mapped(info, quarter)), "turning both turns the answer");
+    const PlacedShape<Fixed>&turnedA = scene.otherA.at(quarter * poseA),
+          &turnedB = scene.otherB.at(quarter * poseB);
+    const CollisionInfo<Fixed> rotated = touch(turnedA, turnedB);
+    if (isDust(cores)) {
+      const Cores<Fixed> turnedCores(turnedA, turnedB);
+      checkAnswer(turnedCores, bruteDistance(turnedCores, limit), turnedA, turnedB, rotated);
+    } else {
+      expect(sameTouch(rotated, mapped(info, quarter)), "turning both turns the answer");
+    }
   }
 
   if (info.count == 0) return;

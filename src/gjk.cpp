@@ -25,11 +25,28 @@ struct Edge {
   MinkowskiPoint<S> v0, v1;
   Part part{};
   Vector<S> search;  // From the nearest part towards the origin.
+
+  // The end that is nearest, where one is.
+  const MinkowskiPoint<S>& corner() const { return part == Part::from ? v0 : v1; }
+  const MinkowskiPoint<S>& other() const { return part == Part::from ? v1 : v0; }
 };
 
 template <Scalar S>
 bool isZero(const Vector<S>& v) {
   return v == Vector<S>();
+}
+
+/// Whether a vertex of the difference is the origin as far as signs of products with another vertex can tell.
+/// In double that is so long before it is zero: what is added to the other vertex is lost, and a search that
+/// took the rest for a direction would go in a ring.
+template <Scalar S>
+bool isOrigin(const Vector<S>& v, const Vector<S>& other) {
+  if constexpr (kIsFixed<S>) {
+    return isZero(v);
+  } else {
+    const S least = max(abs(other.x), abs(other.y)) * S(0x1p-48);
+    return abs(v.x) <= least && abs(v.y) <= least;
+  }
 }
 
 /// Turns the edge round if need be, and finds its nearest part and the direction to search in.
@@ -42,8 +59,8 @@ void look(Edge<S>& edge) {
     edge.search = across;
     return;
   }
-  edge.search = -(edge.part == Part::from ? edge.v0.ab : edge.v1.ab);
-  if (!isZero(edge.search)) return;
+  edge.search = -edge.corner().ab;
+  if (!isOrigin(edge.search, edge.other().ab)) return;
   // The origin is a vertex: turn round it, edge by edge, until all lies on one side.
   edge.search = isZero(across) ? Vector<S>(S(-1), S(0)) : across;
 }
@@ -61,11 +78,11 @@ ClosestPoints<S> closestPoints(const Edge<S>& edge) {
     result.vertexB = v0.b == v1.b ? v0.b : -1;
     return result;
   }
-  const MinkowskiPoint<S>& corner = edge.part == Part::from ? v0 : v1;
+  const MinkowskiPoint<S>& corner = edge.corner();
   result.vertexA = corner.a;
   result.vertexB = corner.b;
   // Two vertices in one place: all of B lies against the direction searched last.
-  result.normal = normalize(isZero(corner.ab) ? -edge.search : corner.ab);
+  result.normal = normalize(isOrigin(corner.ab, edge.other().ab) ? -edge.search : corner.ab);
   result.distance = length(corner.ab);
   return result;
 }
@@ -92,7 +109,7 @@ bool startFrom(const SupportPair<S>& pair, std::uint32_t id, Edge<S>& edge) {
   edge.v0 = pair.vertex(a0, b0);
   edge.v1 = pair.vertex(a1, b1);
   // Two old vertices may lie inside the difference now, which is no harm but on the origin itself.
-  return !isZero(edge.v0.ab) && !isZero(edge.v1.ab);
+  return !isOrigin(edge.v0.ab, edge.v1.ab) && !isOrigin(edge.v1.ab, edge.v0.ab);
 }
 
 }  // namespace
@@ -115,6 +132,9 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
     const MinkowskiPoint<S> p = pair.farthest(n);
     const bool nothingNearer = exactDot(p.ab, n) <= max(exactDot(edge.v0.ab, n), exactDot(edge.v1.ab, n));
     if (nothingNearer || iteration > kMaxGjkIterations) {
+      // In double a search from two old vertices of which one all but coincides with the origin may go in a
+      // ring.
+      if (warm && !nothingNearer) return gjk(pair, 0, axis, stats);
       if (late) ++stats->highGjkIterations;
       return closestPoints(edge);
     }

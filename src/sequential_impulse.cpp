@@ -6,6 +6,38 @@
 #include "require_ieee.h"
 
 namespace samestep {
+namespace {
+
+/// How fast a body may become while contacts answer each other, m/s and rad/s: far more than it may keep, and
+/// little enough for all that is computed from it. One contact changes a speed by no more than 2^21, a spin
+/// by no more than 2^30.
+template <Scalar S>
+inline constexpr S kMostSpeed = S(1 << 22);
+template <Scalar S>
+inline constexpr S kMostSpin = S(1 << 16);
+
+/// Without branches, for it is asked of each contact in each pass.
+template <Scalar S>
+bool allWithin(S x, S y, S z, S limit) {
+  return (static_cast<int>(within(x, limit)) & static_cast<int>(within(y, limit)) &
+          static_cast<int>(within(z, limit))) != 0;
+}
+
+/// Holds what impulses have made of a body's velocities.
+template <Scalar S>
+void hold(ImpulseBody<S>& body) {
+  if (allWithin(body.velocity.x, body.velocity.y, body.angularVelocity, kMostSpin<S>) &&
+      allWithin(body.biasVelocity.x, body.biasVelocity.y, body.biasAngularVelocity, kMostSpin<S>))
+      [[likely]] {
+    return;
+  }
+  body.velocity = heldWithin(body.velocity, kMostSpeed<S>);
+  body.angularVelocity = clamp(body.angularVelocity, -kMostSpin<S>, kMostSpin<S>);
+  body.biasVelocity = heldWithin(body.biasVelocity, kMostSpeed<S>);
+  body.biasAngularVelocity = clamp(body.biasAngularVelocity, -kMostSpin<S>, kMostSpin<S>);
+}
+
+}  // namespace
 
 template <Scalar S>
 void ImpulseSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::uint32_t indexB,
@@ -31,6 +63,8 @@ void ImpulseSolver<S>::warmStart(const ImpulseRow<S>& row, S dtCoefficient) {
   const S normal = min(row.normalSum * dtCoefficient, kMaxSum<S>);
   const S tangent = clamp(row.tangentSum * dtCoefficient, -kMaxSum<S>, kMaxSum<S>);
   answer(row, normal, tangent, a.velocity, a.angularVelocity, b.velocity, b.angularVelocity);
+  hold(a);
+  hold(b);
 }
 
 template <Scalar S>
@@ -42,7 +76,7 @@ void ImpulseSolver<S>::iterate() {
     const S apart =
         normalSpeed(row, b.biasVelocity - a.biasVelocity, a.biasAngularVelocity, b.biasAngularVelocity);
     const S biasBefore = row.biasSum;
-    row.biasSum = max(biasBefore + (row.bias - apart), S(0));
+    row.biasSum = clamp(biasBefore + (row.bias - apart), S(0), kMaxSum<S>);
     const S biasChange = row.biasSum - biasBefore;
 
     const Vector<S> dv = b.velocity - a.velocity;
@@ -50,7 +84,7 @@ void ImpulseSolver<S>::iterate() {
     const S tangent = tangentSpeed(row, dv, a.angularVelocity, b.angularVelocity) + row.surface;
     const S normalBefore = row.normalSum;
     row.normalSum = clamp(normalBefore - (row.bounce + normal), S(0), kMaxSum<S>);
-    const S limit = row.friction * row.normalSum;
+    const S limit = min(row.friction * row.normalSum, kMaxSum<S>);
     highWater<S>("impulses: relative speed", max(abs(normal), abs(tangent)));
     highWater<S>("impulses: friction limit", limit);
     const S tangentBefore = row.tangentSum;
@@ -65,6 +99,8 @@ void ImpulseSolver<S>::iterate() {
     }
     answer(row, row.normalSum - normalBefore, row.tangentSum - tangentBefore, a.velocity, a.angularVelocity,
            b.velocity, b.angularVelocity);
+    hold(a);
+    hold(b);
   }
 }
 
