@@ -23,9 +23,10 @@ bool allWithin(S x, S y, S z, S limit) {
           static_cast<int>(within(z, limit))) != 0;
 }
 
-/// Holds what impulses have made of a body's velocities.
+/// Holds what impulses have made of a body's velocities; in double there is room for any.
 template <Scalar S>
 void hold(ImpulseBody<S>& body) {
+  if constexpr (!kIsFixed<S>) return;
   if (allWithin(body.velocity.x, body.velocity.y, body.angularVelocity, kMostSpin<S>) &&
       allWithin(body.biasVelocity.x, body.biasVelocity.y, body.biasAngularVelocity, kMostSpin<S>))
       [[likely]] {

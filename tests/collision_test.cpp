@@ -443,6 +443,34 @@ TYPED_TEST(CollisionTest, LongSearchIsCounted) {
   EXPECT_EQ(stats.highEpaIterations, 1u);
 }
 
+// Their difference has 32 edges along each of which EPA has to look; with 30 iterations it gave up before.
+TYPED_TEST(CollisionTest, EpaLooksAtAllEdgesOfTwoLargePolygons) {
+  using S = TypeParam;
+  const Placement<S> a(TestFixture::wheel(32, S(2)), Transform<S>());
+  for (const int degrees : {0, 1, 3, 5}) {
+    const Placement<S> b(TestFixture::wheel(32, S(2)),
+                         Transform<S>::rigid({}, kPi<S> * ratio<S>(degrees, 180)));
+    const CollisionInfo<S> info = collide(*a, *b);
+    ASSERT_EQ(info.count, 2);
+    const auto least = [](const PlacedShape<S>& faces, const PlacedShape<S>& other) {
+      S result = S(1 << 10);
+      for (int i = 0; i < faces.count; ++i) {
+        S deepest = S(0);
+        for (int j = 0; j < other.count; ++j) {
+          deepest = max(deepest, dot(faces.planes[i].v0 - other.planes[j].v0, faces.planes[i].n));
+        }
+        result = min(result, deepest);
+      }
+      return result;
+    };
+    const S overlap = min(least(*a, *b), least(*b, *a));
+    for (int i = 0; i < info.count; ++i) {
+      const CollisionPoint<S>& p = info.points[i];
+      EXPECT_LE(dot(p.pointA - p.pointB, info.normal), overlap + S(1e-8)) << degrees;
+    }
+  }
+}
+
 TYPED_TEST(CollisionTest, ShapesOutOfOrderAreAnInternalError) {
   using S = TypeParam;
   const Placement<S> box(TestFixture::unitBox(), Transform<S>()),

@@ -212,6 +212,23 @@ TEST(GjkDoubleTest, EpaTakesNoVertexTwice) {
     EXPECT_NO_THROW(gjk<double>(pair, start, Vector<double>(), nullptr)) << start;
   }
 }
+
+// A vertex of the difference that all but coincides with the origin is lost in sums with other vertices. The
+// search took it for a direction and went in a ring until it gave up, with 0 for the overlap of 4 mm.
+TEST(GjkDoubleTest, AVertexThatAllButCoincidesWithTheOriginEndsNoSearchInARing) {
+  const std::vector<Vector<double>> points = {
+      {0, -2.3283064365386963e-10}, {0.3125, 1.9999999976716936}, {0.0048828125, 0.0048828125}};
+  const Shape<double> sliver = polyShape<double>(BodyId(), points);
+  const Placement<double> a(sliver, Transform<double>::rigid({}, Vector<double>(-1, 0)));
+  const Placement<double> b(sliver, Transform<double>::rigid({}, -forAngle(1.1874362826347351e-08)));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  for (std::uint32_t start = 0; start < 0x03000000u; start += 0x00010000u) {
+    CollisionStats stats;
+    const ClosestPoints<double> found = gjk<double>(pair, start, Vector<double>(), &stats);
+    EXPECT_NEAR(found.distance, -0.0040704840447681918, 1e-12) << start;
+    EXPECT_EQ(stats.highGjkIterations, 0u) << start;
+  }
+}
 #endif
 
 // MIS section 13, SameVertices.
