@@ -1,9 +1,9 @@
 """Coverage of the collision and parsing files by the committed fuzz corpora: `scripts/fuzz --coverage`."""
 
+import json
 import os
 import re
 import subprocess
-import sys
 from collections import defaultdict
 from pathlib import Path
 
@@ -51,33 +51,38 @@ def build(targets):
 
 
 def profile(target, corpora):
-    """What a target reaches by its corpus. @return the lcov text"""
+    """What a target reaches by its corpus. @return lines as lcov text, and branches of each file"""
     program = BUILD / "fuzz" / f"replay_{target}"
     raw, merged = BUILD / f"{target}.profraw", BUILD / f"{target}.profdata"
     subprocess.run([str(program), str(corpora / target)], check=True, stdout=subprocess.DEVNULL,
                    env={**os.environ, "LLVM_PROFILE_FILE": str(raw)})
     subprocess.run(["llvm-profdata-14", "merge", "-sparse", str(raw), "-o", str(merged)], check=True)
     raw.unlink()
-    return subprocess.run(["llvm-cov-14", "export", "-format=lcov", f"-instr-profile={merged}", str(program)],
-                          check=True, capture_output=True, text=True).stdout
+    export = ["llvm-cov-14", "export", f"-instr-profile={merged}", str(program)]
+    lines = subprocess.run([*export, "-format=lcov"], check=True, capture_output=True, text=True).stdout
+    whole = json.loads(subprocess.run(export, check=True, capture_output=True, text=True).stdout)
+    return lines, {file["filename"]: file["branches"] for file in whole["data"][0]["files"]}
 
 
-def add(lcov, wanted, files):
-    """Adds counts: a line is reached where it is in any instantiation, by any target."""
+def add(profiled, wanted, files):
+    """Adds counts: a line or a way is reached where it is in any instantiation, by any target."""
+    lines, branches = profiled
     counts = None
-    for line in lcov.splitlines():
+    for line in lines.splitlines():
         kind, _, rest = line.partition(":")
         if kind == "SF":
             name = os.path.relpath(rest, ROOT)
             counts = files[name] if name in wanted else None
-        elif counts is None:
-            continue
-        elif kind == "DA":
+        elif counts is not None and kind == "DA":
             number, count = rest.split(",")[:2]
             counts.lines[int(number)] += int(count)
-        elif kind == "BRDA":
-            number, block, way, count = rest.split(",")
-            counts.ways[int(number), block, way] += 0 if count == "-" else int(count)
+    for path, ways in branches.items():
+        name = os.path.relpath(path, ROOT)
+        if name not in wanted:
+            continue
+        for line, column, _, _, taken, passed, *_ in ways:
+            files[name].ways[line, column, "true"] += taken
+            files[name].ways[line, column, "false"] += passed
 
 
 def is_excused(text):
@@ -86,11 +91,7 @@ def is_excused(text):
 
 
 def report(targets, corpora, with_lines):
-    """Prints the table. @return whether it could be made"""
-    for tool in ("llvm-profdata-14", "llvm-cov-14"):
-        if subprocess.run(["which", tool], stdout=subprocess.DEVNULL).returncode != 0:
-            print(f"scripts/fuzz: {tool} is missing; scripts/setup tests installs it", file=sys.stderr)
-            return False
+    """Prints the table."""
     build(targets)
     profiles = {target: profile(target, corpora) for target in targets}
     for group, (names, by) in GROUPS.items():
@@ -117,7 +118,6 @@ def report(targets, corpora, with_lines):
             for number, count in sorted(files[name].lines.items()):
                 if count == 0 and not is_excused(source[number - 1]):
                     print(f"  {name}:{number}: {source[number - 1].strip()}")
-            for (number, block, way), count in sorted(files[name].ways.items()):
+            for (number, column, way), count in sorted(files[name].ways.items()):
                 if count == 0 and files[name].lines.get(number, 0) > 0:
-                    print(f"  {name}:{number}: way {way}: {source[number - 1].strip()}")
-    return True
+                    print(f"  {name}:{number}:{column} never {way}: {source[number - 1].strip()}")

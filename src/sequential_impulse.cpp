@@ -9,18 +9,30 @@ namespace samestep {
 namespace {
 
 /// How fast a body may become while contacts answer each other, m/s and rad/s: far more than it may keep, and
-/// little enough for all that is computed from it. One contact changes a speed by no more than 2^21, a spin
-/// by no more than 2^30.
+/// little enough for what is computed from it, at arms of up to 2^10.5 m. One contact changes a speed by no
+/// more than 2^21, a spin by no more than 2^30.
 template <Scalar S>
 inline constexpr S kMostSpeed = S(1 << 22);
 template <Scalar S>
-inline constexpr S kMostSpin = S(1 << 16);
+inline constexpr S kMostSpin = S(1 << 19);
+/// While kept impulses are given, which may turn a body to and fro and leave it at rest: so that one more
+/// fits.
+template <Scalar S>
+inline constexpr S kMostGiven = S(1 << 29);
 
 /// Without branches, for it is asked of each contact in each pass.
 template <Scalar S>
 bool allWithin(S x, S y, S z, S limit) {
   return (static_cast<int>(within(x, limit)) & static_cast<int>(within(y, limit)) &
           static_cast<int>(within(z, limit))) != 0;
+}
+
+template <Scalar S>
+void holdAt(ImpulseBody<S>& body, S speed, S spin) {
+  body.velocity = heldWithin(body.velocity, speed);
+  body.angularVelocity = clamp(body.angularVelocity, -spin, spin);
+  body.biasVelocity = heldWithin(body.biasVelocity, speed);
+  body.biasAngularVelocity = clamp(body.biasAngularVelocity, -spin, spin);
 }
 
 /// Holds what impulses have made of a body's velocities; in double there is room for any.
@@ -32,10 +44,7 @@ void hold(ImpulseBody<S>& body) {
       [[likely]] {
     return;
   }
-  body.velocity = heldWithin(body.velocity, kMostSpeed<S>);
-  body.angularVelocity = clamp(body.angularVelocity, -kMostSpin<S>, kMostSpin<S>);
-  body.biasVelocity = heldWithin(body.biasVelocity, kMostSpeed<S>);
-  body.biasAngularVelocity = clamp(body.biasAngularVelocity, -kMostSpin<S>, kMostSpin<S>);
+  holdAt(body, kMostSpeed<S>, kMostSpin<S>);
 }
 
 }  // namespace
@@ -64,12 +73,15 @@ void ImpulseSolver<S>::warmStart(const ImpulseRow<S>& row, S dtCoefficient) {
   const S normal = min(row.normalSum * dtCoefficient, kMaxSum<S>);
   const S tangent = clamp(row.tangentSum * dtCoefficient, -kMaxSum<S>, kMaxSum<S>);
   answer(row, normal, tangent, a.velocity, a.angularVelocity, b.velocity, b.angularVelocity);
-  hold(a);
-  hold(b);
+  if constexpr (kIsFixed<S>) {
+    for (ImpulseBody<S>* body : {&a, &b}) holdAt(*body, kMostGiven<S>, kMostGiven<S>);
+  }
 }
 
 template <Scalar S>
 void ImpulseSolver<S>::iterate() {
+  // What was given, before anything is computed from it.
+  for (ImpulseBody<S>& body : bodies) hold(body);
   for (ImpulseRow<S>& row : rows) {
     ImpulseBody<S>& a = bodies[row.bodyA];
     ImpulseBody<S>& b = bodies[row.bodyB];

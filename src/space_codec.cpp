@@ -71,7 +71,7 @@ const char* flawOf(const Contact<S>& contact) {
   const S far = S(1 << 23);
   // A push of the soft step, and what friction may make of it.
   const bool kept = contact.normalSpeed >= S(0) && contact.normalSpeed <= kMaxSum<S> &&
-                    abs(contact.tangentSpeed) < kMaxForce<S>;
+                    contact.tangentSpeed > -kMaxForce<S> && contact.tangentSpeed < kMaxForce<S>;
   const bool good = within(contact.anchorA, far) && within(contact.anchorB, far) && kept;
   return good ? nullptr : "a contact is out of range";
 }

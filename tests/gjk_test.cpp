@@ -229,6 +229,22 @@ TEST(GjkDoubleTest, AVertexThatAllButCoincidesWithTheOriginEndsNoSearchInARing) 
     EXPECT_EQ(stats.highGjkIterations, 0u) << start;
   }
 }
+
+// Four corners of the difference of two crossed planks lie in one line. Rounding put one of them in between
+// the ends of a short edge 250 m away, and an edge that ran back was taken for the nearest.
+TEST(GjkDoubleTest, EpaIsNotTurnedInsideOutByCornersInOneLine) {
+  const std::vector<Vector<double>> points = {{127.99999902234413, -0.062991124112159014},
+                                              {127.99999902234413, 0.068844813387840986},
+                                              {-128.00000000814907, 0.068844813387840986},
+                                              {-128.00000000814907, -0.062991124112159014}};
+  const Shape<double> plank = polyShapeRaw<double>(BodyId(), points);
+  const Vector<double> turn = forAngle(-0.1953125);
+  const Placement<double> a(plank, Transform<double>::rigid({0.0048828125, 0.1318359375}, perp(turn)));
+  const Placement<double> b(plank, Transform<double>::rigid({0.0048828125, -0.0380859375}, -turn));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  const ClosestPoints<double> found = gjk<double>(pair, 0, Vector<double>(), nullptr);
+  EXPECT_NEAR(found.distance, -127.89629997004306, 1e-9);
+}
 #endif
 
 // MIS section 13, SameVertices.

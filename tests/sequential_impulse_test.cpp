@@ -97,7 +97,7 @@ TYPED_TEST(ImpulseSolverTest, TheLargestKeptImpulsesStayInRange) {
   if constexpr (kIsFixed<S>) {
     for (const ImpulseBody<S>& body : this->solver_.bodies) {
       EXPECT_TRUE(within(body.velocity, S(1 << 22)));
-      EXPECT_TRUE(within(body.angularVelocity, S(1 << 16)));
+      EXPECT_TRUE(within(body.angularVelocity, S(1 << 19)));
     }
   }
 }
