@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 
 #include <samestep/limits.h>
@@ -26,7 +27,7 @@ struct Case {
 Case current;
 
 /// The dearer checks; each is made on a part of the inputs, as the hash of all bytes has it.
-enum class Choice { checked, real, start, shift, turn, out, aside, rational };
+enum class Choice { checked, real, start, shift, turn, out, aside, rational, plain };
 bool chosen(Choice what) {
   const std::uint64_t bits = current.choice;
   switch (what) {
@@ -44,6 +45,8 @@ bool chosen(Choice what) {
       return (bits >> 8 & 3) == 0;
     case Choice::aside:
       return (bits >> 8 & 3) == 1;
+    case Choice::plain:
+      return (bits >> 16 & 15) == 0;
     case Choice::rational:
       // Of those in double one in 128: of all one in 256.
       return (bits >> 9 & 0x7f) == 0;
@@ -242,6 +245,18 @@ bool nearTouch(const CollisionInfo<Fixed>& a, const CollisionInfo<Fixed>& b, dou
   return true;
 }
 
+/// Without the points that lie so near the end of the reach that rounding may leave them out; one at least
+/// stays.
+CollisionInfo<Fixed> withoutMarginal(CollisionInfo<Fixed> info, double bound) {
+  for (int i = info.count - 1; i >= 0 && info.count > 1; --i) {
+    const double apart = static_cast<double>(dot(info.points[i].pointB - info.points[i].pointA, info.normal));
+    if (std::fabs(apart - static_cast<double>(current.margin)) > bound) continue;
+    if (i == 0) info.points[0] = info.points[1];
+    --info.count;
+  }
+  return info;
+}
+
 /// Where an edge lies across the normal, which side of it counts depends on the order: the names may differ.
 /// Two points come in the other order, but for shapes of two types, which are always searched in one order.
 template <Scalar S>
@@ -270,12 +285,12 @@ CollisionInfo<S> mapped(const CollisionInfo<S>& info, const Transform<S>& by) {
 template <Scalar S>
 struct Scene {
   Placed<S> a, b, otherA, otherB;
+  std::optional<Shape<S>> shapeA, shapeB;
 
   bool make() {
-    const auto shapeA = build<S>(current.shapeA);
+    shapeA = build<S>(current.shapeA);
     if (!shapeA) return false;
-    const bool same = current.same;
-    const auto shapeB = same ? shapeA : build<S>(current.shapeB);
+    shapeB = current.same ? shapeA : build<S>(current.shapeB);
     if (!shapeB) return false;
     if constexpr (std::is_same_v<S, Fixed>) {
       resolve(current.shapeA, *shapeA);
@@ -295,6 +310,19 @@ double armOf(const ShapePlan& plan) {
                             std::fabs(static_cast<double>(plan.points[i].y)));
   }
   return arm;
+}
+
+/// The same question without anything prepared.
+void checkPlain(Scene<Fixed>& scene, const Transform<Fixed>& poseA, const Transform<Fixed>& poseB,
+                const CollisionInfo<Fixed>& info) {
+  expect(boundingBox(*scene.shapeA, poseA) == (*scene.a).box, "the box of a shape is that of the placed one");
+  if (current.margin != Fixed(0)) return;
+  const ContactPointSet<Fixed> set = shapesCollide(*scene.shapeA, poseA, *scene.shapeB, poseB);
+  expect(set.count == info.count, "shapesCollide finds what collide finds");
+  for (int i = 0; i < set.count; ++i) {
+    expect(set.points[i].pointA == info.points[i].pointA && set.points[i].pointB == info.points[i].pointB,
+           "shapesCollide finds the same points");
+  }
 }
 
 void checkDouble(double fixedDistance) {
@@ -352,6 +380,26 @@ void snap(Scene<Fixed>& scene, std::uint64_t how) {
   if (within(moved, Fixed(kMaxNumber))) current.poseB.position = moved;
 }
 
+/// What exchanging two shapes of which one feature wins makes of their answer.
+void checkExchanged(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b,
+                    const CollisionInfo<Fixed>& found, const CollisionInfo<Fixed>& turned,
+                    const Cores<Fixed>& cores, const BruteAnswer& brute, const Bounds<Fixed>& bounds) {
+  const CollisionInfo<Fixed> info = withoutMarginal(found, bounds.place);
+  const CollisionInfo<Fixed> back = withoutMarginal(exchanged(turned, a.type == b.type), bounds.place);
+  const CollisionInfo<Fixed> other = withoutMarginal(exchanged(turned, a.type != b.type), bounds.place);
+  // Apart, the face's own normal and that of the nearest features differ by their rounding.
+  const double turnedBy = brute.distance < 0 ? 0 : 0x1p-29;
+  expect(back.count == info.count, "exchanging the shapes keeps the count");
+  expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
+                   std::fabs(static_cast<double>(back.normal.y - info.normal.y)),
+               info.count == 0 ? 1e300 : turnedBy, "exchanging the shapes turns the normal round");
+  expect(brute.distance >= 0 || isDust(cores) || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
+             sameTouch(back, info, false) || sameTouch(other, info, false) ||
+             (endsMeet(a, b, info) &&
+              (nearTouch(back, info, bounds.place) || nearTouch(other, info, bounds.place))),
+         "exchanging the shapes exchanges the points");
+}
+
 void run(Input& input, std::uint64_t choice) {
   const std::uint64_t head = input.word();
   current = {};
@@ -381,6 +429,8 @@ void run(Input& input, std::uint64_t choice) {
   if (chosen(Choice::checked)) checkChecked(info);
   if (chosen(Choice::real)) checkDouble(brute.distance);
 
+  if (chosen(Choice::plain)) checkPlain(scene, poseA, poseB, info);
+
   // Where one feature wins by more than what rounding may decide, everything else is exact.
   const double reach = static_cast<double>(a.radius + b.radius + current.margin);
   const bool decided = !hasNeighbors() && !gaveUp && width(cores, info) > kNeedle &&
@@ -392,19 +442,7 @@ void run(Input& input, std::uint64_t choice) {
   const CollisionInfo<Fixed> turned = touch(b, a);
   const CollisionInfo<Fixed> back = exchanged(turned, a.type == b.type);
   checkAnswer(cores, brute, a, b, back);
-  if (decided) {
-    // Apart, the face's own normal and that of the nearest features differ by their rounding.
-    const double turnedBy = brute.distance < 0 ? 0 : 0x1p-29;
-    expect(back.count == info.count, "exchanging the shapes keeps the count");
-    expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
-                     std::fabs(static_cast<double>(back.normal.y - info.normal.y)),
-                 info.count == 0 ? 1e300 : turnedBy, "exchanging the shapes turns the normal round");
-    expect(brute.distance >= 0 || isDust(cores) || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
-               sameTouch(back, info, false) || sameTouch(exchanged(turned, a.type != b.type), info, false) ||
-               (endsMeet(a, b, info) && (nearTouch(back, info, bounds.place) ||
-                                         nearTouch(exchanged(turned, a.type != b.type), info, bounds.place))),
-           "exchanging the shapes exchanges the points");
-  }
+  if (decided) checkExchanged(a, b, info, turned, cores, brute, bounds);
 
   for (const CollisionId start : {current.start, info.id}) {
     if (!chosen(Choice::start)) break;
