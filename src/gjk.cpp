@@ -65,6 +65,15 @@ void look(Edge<S>& edge) {
   edge.search = isZero(across) ? Vector<S>(S(-1), S(0)) : across;
 }
 
+/// The squared distance of an edge from the origin, m^2.
+template <Scalar S>
+S squareTo(const Edge<S>& edge) {
+  if (edge.part != Part::inside) return dot(edge.corner().ab, edge.corner().ab);
+  const Vector<S> way = edge.v1.ab - edge.v0.ab;
+  const S across = cross(way, edge.v0.ab);
+  return across / dot(way, way) * across;
+}
+
 /// MIS: closestPointsNew, for an edge found nearest.
 template <Scalar S>
 ClosestPoints<S> closestPoints(const Edge<S>& edge) {
@@ -125,8 +134,17 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
     edge.v1 = pair.farthest(-across);
   }
 
+  // In double, where rounding may send the search back to where it was: the edge before, and how near it is.
+  [[maybe_unused]] Edge<S> before;
+  [[maybe_unused]] S least{};
   for (int iteration = 1;; ++iteration) {
     look(edge);
+    if constexpr (!kIsFixed<S>) {
+      const S square = squareTo(edge);
+      if (iteration > 1 && square > least) return warm ? gjk(pair, 0, axis, stats) : closestPoints(before);
+      before = edge;
+      least = square;
+    }
     const bool late = stats != nullptr && iteration >= kWarnGjkIterations;
     const Vector<S>& n = edge.search;
     const MinkowskiPoint<S> p = pair.farthest(n);

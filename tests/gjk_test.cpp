@@ -230,6 +230,26 @@ TEST(GjkDoubleTest, AVertexThatAllButCoincidesWithTheOriginEndsNoSearchInARing) 
   }
 }
 
+// Each step comes nearer, or rounding has led back: here between two edges, until the search gave up 110 m
+// off.
+TEST(GjkDoubleTest, ASearchThatDoesNotComeNearerEnds) {
+  const double half = 0.34472656273283064, width = 0.34472656296566129, thin = 3.6668498069047928e-06;
+  const std::vector<Vector<double>> box = {{half, -width}, {half, width}, {-half, width}, {-half, -width}};
+  const std::vector<Vector<double>> blade = {
+      {127.90234375, -thin}, {127.90234375, thin}, {-127.90234375, thin}, {-127.90234375, -thin}};
+  const Vector<double> turn = forAngle(27.0);
+  const Placement<double> a(polyShapeRaw<double>(BodyId(), box), Transform<double>::rigid({126, -58}, turn));
+  const Placement<double> b(polyShapeRaw<double>(BodyId(), blade),
+                            Transform<double>::rigid({110.8193359375, -58.000000046566129}, -turn));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  for (const std::uint32_t start : {0u, 0x03020202u}) {
+    CollisionStats stats;
+    EXPECT_NEAR(gjk<double>(pair, start, Vector<double>(), &stats).distance, 14.173691470358605, 1e-9)
+        << start;
+    EXPECT_EQ(stats.highGjkIterations, 0u) << start;
+  }
+}
+
 // Four corners of the difference of two crossed planks lie in one line. Rounding put one of them in between
 // the ends of a short edge 250 m away, and an edge that ran back was taken for the nearest.
 TEST(GjkDoubleTest, EpaIsNotTurnedInsideOutByCornersInOneLine) {
