@@ -141,7 +141,9 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
     look(edge);
     if constexpr (!kIsFixed<S>) {
       const S square = squareTo(edge);
-      if (iteration > 1 && square > least) return warm ? gjk(pair, 0, axis, stats) : closestPoints(before);
+      // Not for a difference of rounding, which would keep a corner where an edge is as near.
+      if (iteration > 1 && square > least + least * S(0x1p-30))
+        return warm ? gjk(pair, 0, axis, stats) : closestPoints(before);
       before = edge;
       least = square;
     }
