@@ -25,33 +25,45 @@ struct Edge {
   MinkowskiPoint<S> v0, v1;
   Part part{};
   Vector<S> search;  // From the nearest part towards the origin.
+  S size{};          // Of the difference as far as it was seen, m; only in double.
 
   // The end that is nearest, where one is.
   const MinkowskiPoint<S>& corner() const { return part == Part::from ? v0 : v1; }
-  const MinkowskiPoint<S>& other() const { return part == Part::from ? v1 : v0; }
 };
+
+/// The larger of two coordinates.
+template <Scalar S>
+S sizeOf(const Vector<S>& v) {
+  return max(abs(v.x), abs(v.y));
+}
 
 template <Scalar S>
 bool isZero(const Vector<S>& v) {
   return v == Vector<S>();
 }
 
-/// Whether a vertex of the difference is the origin as far as signs of products with another vertex can tell.
-/// In double that is so long before it is zero: what is added to the other vertex is lost, and a search that
-/// took the rest for a direction would go in a ring.
+/// Whether a vertex of the difference is the origin as far as signs of products with other vertices can tell.
+/// In double that is so long before it is zero: what is added to a vertex so much farther away is lost, and a
+/// search that took the rest for a direction would go in a ring.
+/// @param size  of the difference as far as it was seen, m
 template <Scalar S>
-bool isOrigin(const Vector<S>& v, const Vector<S>& other) {
+bool isOrigin(const Vector<S>& v, [[maybe_unused]] S size) {
   if constexpr (kIsFixed<S>) {
     return isZero(v);
   } else {
-    const S least = max(abs(other.x), abs(other.y)) * S(0x1p-48);
-    return abs(v.x) <= least && abs(v.y) <= least;
+    return sizeOf(v) <= size * S(0x1p-48);
   }
+}
+
+template <Scalar S>
+void see(Edge<S>& edge) {
+  if constexpr (!kIsFixed<S>) edge.size = max(edge.size, max(sizeOf(edge.v0.ab), sizeOf(edge.v1.ab)));
 }
 
 /// Turns the edge round if need be, and finds its nearest part and the direction to search in.
 template <Scalar S>
 void look(Edge<S>& edge) {
+  see(edge);
   if (leftOf(edge.v1.ab, edge.v0.ab, Vector<S>())) std::swap(edge.v0, edge.v1);
   edge.part = nearestPart(edge.v0.ab, edge.v1.ab);
   const Vector<S> across = perp(edge.v1.ab - edge.v0.ab);
@@ -60,19 +72,27 @@ void look(Edge<S>& edge) {
     return;
   }
   edge.search = -edge.corner().ab;
-  if (!isOrigin(edge.search, edge.other().ab)) return;
+  if (!isOrigin(edge.search, edge.size)) return;
   // The origin is a vertex: turn round it, edge by edge, until all lies on one side.
   edge.search = isZero(across) ? Vector<S>(S(-1), S(0)) : across;
 }
 
-/// The squared distance of an edge from the origin, m^2.
+/// How far an edge is from the origin, m, and what rounding may make of that.
 template <Scalar S>
-S squareTo(const Edge<S>& edge) {
-  if (edge.part != Part::inside) return dot(edge.corner().ab, edge.corner().ab);
-  const Vector<S> way = edge.v1.ab - edge.v0.ab;
-  const S across = cross(way, edge.v0.ab);
-  return across / dot(way, way) * across;
-}
+struct Reach {
+  S distance{}, rounding{};
+
+  Reach() = default;
+  explicit Reach(const Edge<S>& edge) {
+    const Vector<S> way = edge.v1.ab - edge.v0.ab;
+    distance =
+        edge.part != Part::inside ? length(edge.corner().ab) : abs(cross(way, edge.v0.ab)) / length(way);
+    rounding = edge.size * S(0x1p-44);
+  }
+  bool isFartherThan(const Reach& before) const {
+    return distance > before.distance + max(rounding, before.rounding);
+  }
+};
 
 /// MIS: closestPointsNew, for an edge found nearest.
 template <Scalar S>
@@ -91,7 +111,7 @@ ClosestPoints<S> closestPoints(const Edge<S>& edge) {
   result.vertexA = corner.a;
   result.vertexB = corner.b;
   // Two vertices in one place: all of B lies against the direction searched last.
-  result.normal = normalize(isOrigin(corner.ab, edge.other().ab) ? -edge.search : corner.ab);
+  result.normal = normalize(isOrigin(corner.ab, edge.size) ? -edge.search : corner.ab);
   result.distance = length(corner.ab);
   return result;
 }
@@ -118,7 +138,8 @@ bool startFrom(const SupportPair<S>& pair, std::uint32_t id, Edge<S>& edge) {
   edge.v0 = pair.vertex(a0, b0);
   edge.v1 = pair.vertex(a1, b1);
   // Two old vertices may lie inside the difference now, which is no harm but on the origin itself.
-  return !isOrigin(edge.v0.ab, edge.v1.ab) && !isOrigin(edge.v1.ab, edge.v0.ab);
+  see(edge);
+  return !isOrigin(edge.v0.ab, edge.size) && !isOrigin(edge.v1.ab, edge.size);
 }
 
 }  // namespace
@@ -136,16 +157,16 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
 
   // In double, where rounding may send the search back to where it was: the edge before, and how near it is.
   [[maybe_unused]] Edge<S> before;
-  [[maybe_unused]] S least{};
+  [[maybe_unused]] Reach<S> least;
   for (int iteration = 1;; ++iteration) {
     look(edge);
     if constexpr (!kIsFixed<S>) {
-      const S square = squareTo(edge);
-      // Not for a difference of rounding, which would keep a corner where an edge is as near.
-      if (iteration > 1 && square > least + least * S(0x1p-30))
+      const Reach<S> reach(edge);
+      if (iteration > 1 && reach.isFartherThan(least)) {
         return warm ? gjk(pair, 0, axis, stats) : closestPoints(before);
+      }
       before = edge;
-      least = square;
+      least = reach;
     }
     const bool late = stats != nullptr && iteration >= kWarnGjkIterations;
     const Vector<S>& n = edge.search;
