@@ -22,6 +22,7 @@ struct Model {
     bool present = false;
     bool resting = false;
     BB<S> box;
+    Vector<S> velocity;
   };
   std::array<Object, kKeys> objects;
   S margin{};
@@ -36,6 +37,96 @@ BB<S> readBox(Input& input) {
   return {as<S>(x), as<S>(y), as<S>(x + width), as<S>(y + height)};
 }
 
+/// A tree and a brute-force index that ask for the boxes of the same objects, each with a static one.
+template <Scalar S>
+class Indexes {
+ public:
+  explicit Indexes(Model<S>& model) : model_(model) {
+    for (SpatialIndex<S>* index :
+         {static_cast<SpatialIndex<S>*>(&tree_), static_cast<SpatialIndex<S>*>(&brute_)}) {
+      index->setVelocityFunc(&Indexes::velocityOf, &remarks_);
+    }
+  }
+
+  /// Brings in what the model says.
+  void follow(bool withVelocities) {
+    tree_.setVelocityFunc(withVelocities ? &Indexes::velocityOf : nullptr, nullptr);
+    for (IndexKey key = 0; key < kKeys; ++key) {
+      const auto& object = model_.objects[key];
+      const auto set = [&](SpatialIndex<S>& index, bool present) {
+        if (!present) return index.remove(key);
+        index.contains(key) ? index.reindexObject(key) : index.insert(key);
+      };
+      set(tree_, object.present && !object.resting);
+      set(brute_, object.present && !object.resting);
+      set(restingTree_, object.present && object.resting);
+      set(restingBrute_, object.present && object.resting);
+    }
+    expect(tree_.count() == brute_.count() && restingTree_.count() == restingBrute_.count(),
+           "both indexes hold as many");
+  }
+
+  void compare(const BB<S>& box, IndexKey leftOut) {
+    const auto pairsOf = [&](SpatialIndex<S>& index) {
+      std::vector<KeyPair> pairs;
+      index.reindexQuery(
+          [](void* to, IndexKey a, IndexKey b) {
+            static_cast<std::vector<KeyPair>*>(to)->push_back({a, b});
+          },
+          &pairs);
+      expect(std::is_sorted(pairs.begin(), pairs.end()), "pairs come by rising keys");
+      std::erase_if(pairs, [&](const KeyPair& pair) {
+        return !intersects(model_.objects[pair.a].box, model_.objects[pair.b].box);
+      });
+      return pairs;
+    };
+    expect(pairsOf(tree_) == pairsOf(brute_), "a tree finds the pairs that brute force finds");
+    expect(pairsOf(restingTree_) == pairsOf(restingBrute_), "so does a static tree");
+    // A tree beside a static index of another kind.
+    const auto mixedPairs = [&](const SpatialIndex<S>& index, const SpatialIndex<S>& resting) {
+      std::vector<KeyPair> pairs;
+      index.collideStatic(
+          resting,
+          [](void* to, IndexKey a, IndexKey b) {
+            static_cast<std::vector<KeyPair>*>(to)->push_back({a, b});
+          },
+          &pairs);
+      std::erase_if(pairs, [&](const KeyPair& pair) {
+        return !intersects(model_.objects[pair.a].box, model_.objects[pair.b].box);
+      });
+      return pairs;
+    };
+    expect(mixedPairs(tree_, restingBrute_) == mixedPairs(brute_, restingTree_),
+           "kinds of index can be mixed");
+    std::vector<IndexKey> found, exact;
+    tree_.collect(box, found, leftOut);
+    brute_.collect(box, exact, leftOut);
+    std::erase_if(found, [&](IndexKey key) { return !intersects(box, model_.objects[key].box); });
+    expect(found == exact, "a query of a tree finds what brute force finds");
+    std::vector<IndexKey> all, others;
+    const auto add = [](void* to, IndexKey key) { static_cast<std::vector<IndexKey>*>(to)->push_back(key); };
+    tree_.each(add, &all);
+    brute_.each(add, &others);
+    expect(all == others, "both indexes visit the same objects");
+    expect(tree_.boxes().valid() && restingTree_.boxes().valid(),
+           "every node knows its box, height and parent");
+    expect(tree_.bytes() >= all.size() * sizeof(BB<S>), "a tree says how large it is");
+  }
+
+ private:
+  static BB<S> boxOf(void* context, IndexKey key) {
+    return static_cast<Indexes*>(context)->model_.objects[key].box;
+  }
+  static Vector<S> velocityOf(void* context, IndexKey key) {
+    return static_cast<Indexes*>(context)->model_.objects[key].velocity;
+  }
+
+  Model<S>& model_;
+  Remarks remarks_;
+  BBTree<S> restingTree_{&Indexes::boxOf, this}, tree_{&Indexes::boxOf, this, &restingTree_};
+  BruteForceIndex<S> restingBrute_{&Indexes::boxOf, this}, brute_{&Indexes::boxOf, this, &restingBrute_};
+};
+
 template <Scalar S>
 class Trees {
  public:
@@ -49,7 +140,7 @@ class Trees {
     } else {
       moving_.update(key, box, velocity);
     }
-    object = {true, resting, box};
+    object = {true, resting, box, velocity};
   }
   void remove(IndexKey key) {
     moving_.remove(key);
@@ -128,6 +219,8 @@ class Trees {
     }
   }
 
+  Model<S>& model() { return model_; }
+  bool isValid() const { return moving_.boxes().valid() && resting_.boxes().valid(); }
   std::uint32_t count() const { return moving_.count() + resting_.count(); }
   const std::vector<KeyPair>& pairs() const { return moving_.pairs(); }
 
@@ -140,6 +233,7 @@ class Trees {
 template <Scalar S>
 void run(Input input) {
   Trees<S> trees;
+  Indexes<S> indexes(trees.model());
   BBTree<S> restingCopy, movingCopy(nullptr, nullptr, &restingCopy);
   for (int operations = 0; !input.atEnd() && operations < 64; ++operations) {
     const std::uint64_t op = input.word();
@@ -180,12 +274,18 @@ void run(Input input) {
       case 12:
         if (byteOf(op, 2) == 0) trees.clear();
         break;
+      case 13: {
+        indexes.follow((op >> 16 & 1) != 0);
+        indexes.compare(readBox<S>(input), (op >> 17 & 1) != 0 ? key : kNoKey);
+        break;
+      }
       default:
         trees.checkPairs();
         break;
     }
   }
   trees.checkPairs();
+  expect(trees.isValid(), "every node knows its box, height and parent");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cases.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <samestep/circle_shape.h>
@@ -146,6 +147,14 @@ std::optional<Shape<S>> build(const ShapePlan& plan) {
   } catch (const Error&) {
   }
   return std::nullopt;
+}
+
+void resolve(ShapePlan& plan, const Shape<Fixed>& shape) {
+  if (plan.make != ShapePlan::Make::hull) return;
+  const std::span<const Vector<Fixed>> vertices = shape.vertices();
+  plan.make = ShapePlan::Make::raw;
+  plan.count = static_cast<int>(vertices.size());
+  std::copy(vertices.begin(), vertices.end(), plan.points);
 }
 
 template std::optional<Shape<double>> build<double>(const ShapePlan&);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <type_traits>
 
 #include <samestep/limits.h>
 
@@ -17,6 +19,7 @@ namespace {
 struct Case {
   ShapePlan shapeA, shapeB;
   PosePlan poseA, poseB;
+  bool same = false;  ///< Whether B is the same shape as A.
   Fixed margin{};
   CollisionId start = 0;
   std::uint64_t choice = 0;  ///< Which of the dearer checks are made.
@@ -24,7 +27,7 @@ struct Case {
 Case current;
 
 /// The dearer checks; each is made on a part of the inputs, as the hash of all bytes has it.
-enum class Choice { checked, real, start, shift, turn, out, aside, rational };
+enum class Choice { checked, real, start, shift, turn, out, aside, rational, plain };
 bool chosen(Choice what) {
   const std::uint64_t bits = current.choice;
   switch (what) {
@@ -42,6 +45,8 @@ bool chosen(Choice what) {
       return (bits >> 8 & 3) == 0;
     case Choice::aside:
       return (bits >> 8 & 3) == 1;
+    case Choice::plain:
+      return (bits >> 16 & 15) == 0;
     case Choice::rational:
       // Of those in double one in 128: of all one in 256.
       return (bits >> 9 & 0x7f) == 0;
@@ -80,8 +85,9 @@ void describe() {
   }
 }
 
-/// Faces that lie this flat on each other count as one: collide takes the first shape's.
-constexpr double kFlat = 0x1p-20;
+/// Faces that lie 2^-20 m flat on each other count as one: collide takes the first shape's. It compares them
+/// by places cut to 2^-22 m, which for two faces adds up to as much again.
+constexpr double kFlat = 0x1p-19;
 /// Where the Minkowski difference is thinner than this part of its size, double makes no promise.
 constexpr double kThin = 0x1p-20;
 /// Nor where an edge is shorter than this part.
@@ -139,13 +145,6 @@ double width(const Cores<S>& cores, const CollisionInfo<S>& info) {
 }
 constexpr double kNeedle = 0x1p-10;
 
-/// Whether a segment or needle is among the shapes that points at the other without a margin of its own: its
-/// tip may be lost between the two points that are looked at.
-template <Scalar S>
-bool mayMiss(const PlacedShape<S>& a, const PlacedShape<S>& b) {
-  return a.type != ShapeType::circle && b.type != ShapeType::circle;
-}
-
 /// What holds for every answer, whatever the features are.
 template <Scalar S>
 void checkAnswer(const Cores<S>& cores, const BruteAnswer& brute, const PlacedShape<S>& a,
@@ -156,8 +155,8 @@ void checkAnswer(const Cores<S>& cores, const BruteAnswer& brute, const PlacedSh
   remember(info);
   expect(info.count >= 0 && info.count <= kMaxContactsPerPair, "at most two points");
   if (info.count == 0) {
-    if (!hasNeighbors() && !mayMiss(a, b)) {
-      expectAtMost(reach - bounds.place, brute.distance, "shapes in reach touch");
+    if (!hasNeighbors()) {
+      expectAtMost(reach - bounds.place - bounds.flat, brute.distance, "shapes in reach touch");
     }
     return;
   }
@@ -209,17 +208,53 @@ bool sameTouch(const CollisionInfo<S>& a, const CollisionInfo<S>& b, bool featur
   return true;
 }
 
-/// Whether a shape is a segment that points along the normal, nearly, or a polygon like dust: rounding then
-/// decides which side is towards the other shape.
+/// Whether two vertices lie hardly farther apart than the places that faces are searched by: which of them is
+/// the nearest, is then a matter of rounding.
+bool isDust(const Cores<Fixed>& cores) { return cores.shortest < 0x1p-16; }
+/// Whether a shape is a segment that points along the normal, nearly: rounding then decides which side is
+/// towards the other shape.
 bool hasNoSide(const PlacedShape<Fixed>& shape, const Vector<Fixed>& normal) {
-  if (shape.type == ShapeType::circle) return false;
-  if (shape.type == ShapeType::poly) {
-    return shape.box.right - shape.box.left < Fixed(0x1p-12) &&
-           shape.box.top - shape.box.bottom < Fixed(0x1p-12);
-  }
+  if (shape.type != ShapeType::segment) return false;
   const Vector<Fixed> edge = shape.planes[1].v0 - shape.planes[0].v0;
   return std::fabs(static_cast<double>(cross(edge, normal))) <
          std::max(16 * 0x1p-32, 0x1p-20 * static_cast<double>(length(edge)));
+}
+
+/// Whether the ends of two facing edges that make a point lie opposite each other to some units: rounding
+/// then decides which of them the point is at.
+bool endsMeet(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b, const CollisionInfo<Fixed>& info) {
+  if (a.type == ShapeType::circle || b.type == ShapeType::circle) return false;
+  for (int i = 0; i < info.count; ++i) {
+    const std::uint32_t hash = info.points[i].hash;
+    const Vector<Fixed> apart = b.planes[hash & 0xffff].v0 - a.planes[hash >> 16].v0;
+    if (std::fabs(static_cast<double>(cross(apart, info.normal))) <= 16 * 0x1p-32) return true;
+  }
+  return false;
+}
+bool nearTouch(const CollisionInfo<Fixed>& a, const CollisionInfo<Fixed>& b, double tolerance) {
+  if (a.count != b.count || (a.count > 0 && a.normal != b.normal)) return false;
+  const auto near = [&](const Vector<Fixed>& p, const Vector<Fixed>& q) {
+    return std::fabs(static_cast<double>(p.x - q.x)) <= tolerance &&
+           std::fabs(static_cast<double>(p.y - q.y)) <= tolerance;
+  };
+  for (int i = 0; i < a.count; ++i) {
+    if (!near(a.points[i].pointA, b.points[i].pointA) || !near(a.points[i].pointB, b.points[i].pointB)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Without the points that lie so near the end of the reach that rounding may leave them out; one at least
+/// stays.
+CollisionInfo<Fixed> withoutMarginal(CollisionInfo<Fixed> info, double bound) {
+  for (int i = info.count - 1; i >= 0 && info.count > 1; --i) {
+    const double apart = static_cast<double>(dot(info.points[i].pointB - info.points[i].pointA, info.normal));
+    if (std::fabs(apart - static_cast<double>(current.margin)) > bound) continue;
+    if (i == 0) info.points[0] = info.points[1];
+    --info.count;
+  }
+  return info;
 }
 
 /// Where an edge lies across the normal, which side of it counts depends on the order: the names may differ.
@@ -250,10 +285,17 @@ CollisionInfo<S> mapped(const CollisionInfo<S>& info, const Transform<S>& by) {
 template <Scalar S>
 struct Scene {
   Placed<S> a, b, otherA, otherB;
+  std::optional<Shape<S>> shapeA, shapeB;
 
   bool make() {
-    const auto shapeA = build<S>(current.shapeA), shapeB = build<S>(current.shapeB);
-    if (!shapeA || !shapeB) return false;
+    shapeA = build<S>(current.shapeA);
+    if (!shapeA) return false;
+    shapeB = current.same ? shapeA : build<S>(current.shapeB);
+    if (!shapeB) return false;
+    if constexpr (std::is_same_v<S, Fixed>) {
+      resolve(current.shapeA, *shapeA);
+      resolve(current.shapeB, *shapeB);
+    }
     for (Placed<S>* placed : {&a, &otherA}) placed->prepare(*shapeA);
     for (Placed<S>* placed : {&b, &otherB}) placed->prepare(*shapeB);
     return true;
@@ -268,6 +310,19 @@ double armOf(const ShapePlan& plan) {
                             std::fabs(static_cast<double>(plan.points[i].y)));
   }
   return arm;
+}
+
+/// The same question without anything prepared.
+void checkPlain(Scene<Fixed>& scene, const Transform<Fixed>& poseA, const Transform<Fixed>& poseB,
+                const CollisionInfo<Fixed>& info) {
+  expect(boundingBox(*scene.shapeA, poseA) == (*scene.a).box, "the box of a shape is that of the placed one");
+  if (current.margin != Fixed(0)) return;
+  const ContactPointSet<Fixed> set = shapesCollide(*scene.shapeA, poseA, *scene.shapeB, poseB);
+  expect(set.count == info.count, "shapesCollide finds what collide finds");
+  for (int i = 0; i < set.count; ++i) {
+    expect(set.points[i].pointA == info.points[i].pointA && set.points[i].pointB == info.points[i].pointB,
+           "shapesCollide finds the same points");
+  }
 }
 
 void checkDouble(double fixedDistance) {
@@ -323,11 +378,32 @@ void snap(Scene<Fixed>& scene, std::uint64_t how) {
   if (within(moved, Fixed(kMaxNumber))) current.poseB.position = moved;
 }
 
+/// What exchanging two shapes of which one feature wins makes of their answer.
+void checkExchanged(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b,
+                    const CollisionInfo<Fixed>& found, const CollisionInfo<Fixed>& turned,
+                    const Cores<Fixed>& cores, const BruteAnswer& brute, const Bounds<Fixed>& bounds) {
+  const CollisionInfo<Fixed> info = withoutMarginal(found, bounds.place);
+  const CollisionInfo<Fixed> back = withoutMarginal(exchanged(turned, a.type == b.type), bounds.place);
+  const CollisionInfo<Fixed> other = withoutMarginal(exchanged(turned, a.type != b.type), bounds.place);
+  // Apart, the face's own normal and that of the nearest features differ by their rounding.
+  const double turnedBy = brute.distance < 0 ? 0 : 0x1p-29;
+  expect(back.count == info.count, "exchanging the shapes keeps the count");
+  expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
+                   std::fabs(static_cast<double>(back.normal.y - info.normal.y)),
+               info.count == 0 ? 1e300 : turnedBy, "exchanging the shapes turns the normal round");
+  expect(brute.distance >= 0 || isDust(cores) || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
+             sameTouch(back, info, false) || sameTouch(other, info, false) ||
+             (endsMeet(a, b, info) &&
+              (nearTouch(back, info, bounds.place) || nearTouch(other, info, bounds.place))),
+         "exchanging the shapes exchanges the points");
+}
+
 void run(Input& input, std::uint64_t choice) {
   const std::uint64_t head = input.word();
   current = {};
   current.shapeA = readShape(input);
-  current.shapeB = (head & 1) != 0 ? current.shapeA : readShape(input);
+  current.same = (head & 1) != 0;
+  current.shapeB = current.same ? current.shapeA : readShape(input);
   current.poseA = readPose(input, nullptr);
   current.poseB = readPose(input, &current.poseA);
   constexpr Fixed kMargins[] = {Fixed(0), Fixed(0), Fixed::ratio(1, 50), Fixed(1)};
@@ -351,6 +427,8 @@ void run(Input& input, std::uint64_t choice) {
   if (chosen(Choice::checked)) checkChecked(info);
   if (chosen(Choice::real)) checkDouble(brute.distance);
 
+  if (chosen(Choice::plain)) checkPlain(scene, poseA, poseB, info);
+
   // Where one feature wins by more than what rounding may decide, everything else is exact.
   const double reach = static_cast<double>(a.radius + b.radius + current.margin);
   const bool decided = !hasNeighbors() && !gaveUp && width(cores, info) > kNeedle &&
@@ -362,17 +440,7 @@ void run(Input& input, std::uint64_t choice) {
   const CollisionInfo<Fixed> turned = touch(b, a);
   const CollisionInfo<Fixed> back = exchanged(turned, a.type == b.type);
   checkAnswer(cores, brute, a, b, back);
-  if (decided) {
-    // Apart, the face's own normal and that of the nearest features differ by their rounding.
-    const double turnedBy = brute.distance < 0 ? 0 : 0x1p-29;
-    expect(back.count == info.count, "exchanging the shapes keeps the count");
-    expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
-                     std::fabs(static_cast<double>(back.normal.y - info.normal.y)),
-                 info.count == 0 ? 1e300 : turnedBy, "exchanging the shapes turns the normal round");
-    expect(brute.distance >= 0 || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
-               sameTouch(back, info, false) || sameTouch(exchanged(turned, a.type != b.type), info, false),
-           "exchanging the shapes exchanges the points");
-  }
+  if (decided) checkExchanged(a, b, info, turned, cores, brute, bounds);
 
   for (const CollisionId start : {current.start, info.id}) {
     if (!chosen(Choice::start)) break;
@@ -394,9 +462,15 @@ void run(Input& input, std::uint64_t choice) {
   // Turned by a quarter about the origin: exact but for the axes of last resort.
   const Transform<Fixed> quarter(Fixed(0), Fixed(1), Fixed(-1), Fixed(0), Fixed(0), Fixed(0));
   if (chosen(Choice::turn) && decided) {
-    const CollisionInfo<Fixed> rotated =
-        touch(scene.otherA.at(quarter * poseA), scene.otherB.at(quarter * poseB));
-    expect(sameTouch(rotated, mapped(info, quarter)), "turning both turns the answer");
+    const PlacedShape<Fixed>&turnedA = scene.otherA.at(quarter * poseA),
+          &turnedB = scene.otherB.at(quarter * poseB);
+    const CollisionInfo<Fixed> rotated = touch(turnedA, turnedB);
+    if (isDust(cores)) {
+      const Cores<Fixed> turnedCores(turnedA, turnedB);
+      checkAnswer(turnedCores, bruteDistance(turnedCores, limit), turnedA, turnedB, rotated);
+    } else {
+      expect(sameTouch(rotated, mapped(info, quarter)), "turning both turns the answer");
+    }
   }
 
   if (info.count == 0) return;

@@ -40,7 +40,9 @@ double squareMetres(Product<S> product) {
 }
 template <Scalar S>
 double lengthOf(const Vector<S>& v) {
-  return std::hypot(static_cast<double>(v.x), static_cast<double>(v.y));
+  const double x = static_cast<double>(v.x), y = static_cast<double>(v.y);
+  const double square = x * x + y * y;
+  return square > 0x1p-900 ? std::sqrt(square) : std::hypot(x, y);
 }
 
 /// Visits the edges with the outside to their right; of a segment both sides, of a circle none.
@@ -53,9 +55,20 @@ void eachEdge(const Vector<S>* points, int count, Visit&& visit) {
   }
 }
 
+/// The faces of both cores, one core after the other.
 template <Scalar S>
-void tryFaces(const Vector<S>* points, int count, const Vector<S>* others, int otherCount,
-              BruteAnswer& answer) {
+struct FaceTrial {
+  BruteAnswer& answer;
+  double size;  ///< Of the pair, m.
+  double unit;  ///< By how much rounding may have moved a vertex, m.
+  double bestDoubt = 0;
+  double farthest = -1e300;  ///< That any face may be.
+
+  void tryAll(const Vector<S>* points, int count, const Vector<S>* others, int otherCount);
+};
+
+template <Scalar S>
+void FaceTrial<S>::tryAll(const Vector<S>* points, int count, const Vector<S>* others, int otherCount) {
   eachEdge(points, count, [&](const Vector<S>& from, const Vector<S>& to) {
     const Vector<S> edge = to - from;
     Product<S> least = crossOf(others[0] - from, edge);
@@ -63,13 +76,17 @@ void tryFaces(const Vector<S>* points, int count, const Vector<S>* others, int o
     // Rounding may turn the smallest polygons inside out, so the own vertices count as well.
     Product<S> most = 0;
     for (int i = 0; i < count; ++i) most = std::max(most, crossOf(points[i] - from, edge));
-    const double apart = squareMetres<S>(least - most) / lengthOf(edge);
+    const double length = lengthOf(edge), apart = squareMetres<S>(least - most) / length;
+    // Where rounding may have turned the edge, the face may be as far as that.
+    const double doubt = size * std::min(1.0, unit / length);
     if (apart > answer.bestFace) {
-      answer.lead = apart - answer.bestFace;
+      answer.lead = apart - doubt - std::max(answer.bestFace, farthest);
       answer.bestFace = apart;
+      bestDoubt = doubt;
     } else {
-      answer.lead = std::min(answer.lead, answer.bestFace - apart);
+      answer.lead = std::min(answer.lead, answer.bestFace - bestDoubt - (apart + doubt));
     }
+    farthest = std::max(farthest, apart + doubt);
   });
 }
 
@@ -132,8 +149,9 @@ Cores<S>::Cores(const PlacedShape<S>& first, const PlacedShape<S>& second) {
 template <Scalar S>
 BruteAnswer bruteDistance(const Cores<S>& cores, double limit) {
   BruteAnswer answer;
-  tryFaces(cores.a, cores.countA, cores.b, cores.countB, answer);
-  tryFaces(cores.b, cores.countB, cores.a, cores.countA, answer);
+  FaceTrial<S> faces{answer, cores.size, kIsFixed<S> ? 0x1p-31 : cores.reach * 0x1p-51};
+  faces.tryAll(cores.a, cores.countA, cores.b, cores.countB);
+  faces.tryAll(cores.b, cores.countB, cores.a, cores.countA);
   answer.distance = answer.bestFace;
   // Without area between them, the cores may be apart along a line that no face is across.
   const bool flat = cores.countA <= 2 && cores.countB <= 2;
@@ -188,6 +206,7 @@ double areaAcross(const Vector<S>* points, int count, const Vector<S>& edge) {
 
 template <Scalar S>
 double leastWidth(const Cores<S>& cores) {
+  if (cores.narrowest >= 0) return cores.narrowest;
   double least = 1e300;
   for (const auto& [points, count] : {std::pair(cores.a, cores.countA), std::pair(cores.b, cores.countB)}) {
     if (count < 3) continue;
@@ -195,6 +214,7 @@ double leastWidth(const Cores<S>& cores) {
       least = std::min(least, areaAcross(own, size, to - from) / lengthOf(to - from));
     });
   }
+  cores.narrowest = least;
   return least;
 }
 

@@ -160,7 +160,8 @@ void checkFunctions() {
   }
 }
 
-void checkDouble() {
+/// @param withText  also the decimal text, which takes twenty times as long as all the rest
+void checkDouble(bool withText) {
   double x = 0, y = 0;
   std::memcpy(&x, &a, sizeof x);
   std::memcpy(&y, &b, sizeof y);
@@ -171,10 +172,12 @@ void checkDouble() {
            "a double becomes the nearest number");
   }
   if (!isFinite(x)) return;
-  const std::string text = formatDecimal(x);
-  double back = 1;
-  expect(parseDecimal(std::string_view(text), back) == DecimalStatus::ok, "what is written can be read");
-  expect(std::memcmp(&back, &x, sizeof x) == 0, "a double reads back the same");
+  if (withText) {
+    const std::string text = formatDecimal(x);
+    double back = 1;
+    expect(parseDecimal(std::string_view(text), back) == DecimalStatus::ok, "what is written can be read");
+    expect(std::memcmp(&back, &x, sizeof x) == 0, "a double reads back the same");
+  }
   if (!isFinite(y)) return;
   if (std::fabs(x) < 0x1p500 && std::fabs(y) < 0x1p500 && std::fabs(x) > 0x1p-500 &&
       std::fabs(y) > 0x1p-500) {
@@ -239,7 +242,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       checkFunctions();
       break;
     case 5:
-      checkDouble();
+      checkDouble((mixed(data, size) & 7) == 0);
       break;
     default:
       checkText(size > 16 ? std::string_view(reinterpret_cast<const char*>(data) + 16, size - 16) : "");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "cases.h"
 #include "check.h"
@@ -15,6 +16,7 @@ namespace {
 struct Case {
   ShapePlan shapeA, shapeB;
   PosePlan poseA, poseB;
+  bool same = false;  ///< Whether B is the same shape as A.
   Vector<Fixed> axis;
   std::uint32_t start = 0;
 };
@@ -38,8 +40,8 @@ bool isVertexOf(const SupportShape<S>& shape, int vertex) {
 }
 
 template <Scalar S>
-void check(const Cores<S>& cores, const SupportPair<S>& pair, const ClosestPoints<S>& found,
-           const CollisionStats& stats) {
+void check(const Cores<S>& cores, const BruteAnswer& brute, const SupportPair<S>& pair,
+           const ClosestPoints<S>& found, const CollisionStats& stats) {
   // What GJK answers with is one rounded direction times one difference.
   // In double the edges of the difference are rounded, the short ones most.
   const double turned = std::min(1.0, cores.reach * 0x1p-50 / cores.shortest);
@@ -47,7 +49,6 @@ void check(const Cores<S>& cores, const SupportPair<S>& pair, const ClosestPoint
                                    : cores.size * (0x1p-46 + turned) + cores.reach * 0x1p-50;
   // A search that reached its limit of iterations answers with the best edge so far.
   const double gaveUp = stats.highEpaIterations > 0 ? cores.size * 0x1p-5 : 0;
-  const BruteAnswer brute = bruteDistance(cores, 1e300);
   const double distance = static_cast<double>(found.distance);
   expectNear(distance, brute.distance, bound + gaveUp, "the distance is that of brute force");
   const double nx = static_cast<double>(found.normal.x), ny = static_cast<double>(found.normal.y);
@@ -63,11 +64,22 @@ void check(const Cores<S>& cores, const SupportPair<S>& pair, const ClosestPoint
 }
 
 template <Scalar S>
+bool same(const ClosestPoints<S>& a, const ClosestPoints<S>& b) {
+  return a.normal == b.normal && a.distance == b.distance && a.vertexA == b.vertexA && a.vertexB == b.vertexB;
+}
+
+template <Scalar S>
 struct Search {
   Placed<S> a, b;
   bool make() {
-    const auto shapeA = build<S>(current.shapeA), shapeB = build<S>(current.shapeB);
-    if (!shapeA || !shapeB) return false;
+    const auto shapeA = build<S>(current.shapeA);
+    if (!shapeA) return false;
+    const auto shapeB = current.same ? shapeA : build<S>(current.shapeB);
+    if (!shapeB) return false;
+    if constexpr (std::is_same_v<S, Fixed>) {
+      resolve(current.shapeA, *shapeA);
+      resolve(current.shapeB, *shapeB);
+    }
     a.prepare(*shapeA);
     b.prepare(*shapeB);
     return true;
@@ -93,19 +105,32 @@ void runWith(Search<S>& search) {
     searchFrom<S>(pair, current.start, stats);
     return;
   }
+  const BruteAnswer brute = bruteDistance(cores, 1e300);
   const ClosestPoints<S> cold = searchFrom<S>(pair, 0, stats);
-  check(cores, pair, cold, stats);
+  check(cores, brute, pair, cold, stats);
   for (const std::uint32_t start : {current.start, cold.id}) {
     const ClosestPoints<S> found = searchFrom<S>(pair, start, stats);
-    check(cores, pair, found, stats);
+    if (start != cold.id || !same(found, cold)) check(cores, brute, pair, found, stats);
   }
 }
 
-void run(Input& input) {
+void runChecked() {
+  static Search<CheckedFixed> search;
+  expect(search.make(), "CheckedFixed takes what Fixed takes");
+  CollisionStats stats;
+  const PlacedShape<CheckedFixed>&a = search.a.at(transformOf<CheckedFixed>(current.poseA)),
+        &b = search.b.at(transformOf<CheckedFixed>(current.poseB));
+  searchFrom<CheckedFixed>({SupportShape<CheckedFixed>(a), SupportShape<CheckedFixed>(b)}, current.start,
+                           stats);
+}
+
+/// @param choice  a hash of the input: which of the dearer checks are made
+void run(Input& input, std::uint64_t choice) {
   const std::uint64_t head = input.word();
   current = {};
   current.shapeA = readShape(input);
-  current.shapeB = (head & 1) != 0 ? current.shapeA : readShape(input);
+  current.same = (head & 1) != 0;
+  current.shapeB = current.same ? current.shapeA : readShape(input);
   current.poseA = readPose(input, nullptr);
   current.poseB = readPose(input, &current.poseA);
   current.start = static_cast<std::uint32_t>(head >> 32);
@@ -117,16 +142,10 @@ void run(Input& input) {
   if (!fixedSearch.make()) return;
   runWith(fixedSearch);
 
-  static Search<CheckedFixed> checkedSearch;
-  expect(checkedSearch.make(), "CheckedFixed takes what Fixed takes");
-  CollisionStats stats;
-  const PlacedShape<CheckedFixed>&a = checkedSearch.a.at(transformOf<CheckedFixed>(current.poseA)),
-        &b = checkedSearch.b.at(transformOf<CheckedFixed>(current.poseB));
-  searchFrom<CheckedFixed>({SupportShape<CheckedFixed>(a), SupportShape<CheckedFixed>(b)}, current.start,
-                           stats);
+  if ((choice & 3) == 0) runChecked();
 
   static Search<double> doubleSearch;
-  if (doubleSearch.make()) runWith(doubleSearch);
+  if ((choice & 4) == 0 && doubleSearch.make()) runWith(doubleSearch);
 }
 
 }  // namespace
@@ -135,6 +154,6 @@ void run(Input& input) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   samestep::fuzz::describer() = samestep::fuzz::describe;
   samestep::fuzz::Input input(data, size);
-  samestep::fuzz::guarded([&] { samestep::fuzz::run(input); });
+  samestep::fuzz::guarded([&] { samestep::fuzz::run(input, samestep::fuzz::mixed(data, size)); });
   return 0;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <samestep/circle_shape.h>
@@ -151,6 +152,65 @@ void checkMass(const Shape<S>& shape, const Exact& exact, double slimness) {
   }
 }
 
+/// Setting what is there changes nothing, and the functions for numbers say what the shape says.
+void checkMeasures(const Shape<Fixed>& shape) {
+  Shape<Fixed> copy = shape;
+  Fixed area, moment;
+  const Fixed mass(3);
+  copy.setMass(mass);
+  const Shape<Fixed> whole = copy;
+  const Vector<Fixed> none;
+  switch (shape.type()) {
+    case ShapeType::circle: {
+      CircleShape<Fixed> circle(copy);
+      circle.setRadius(circle.radius());
+      circle.setOffset(circle.offset());
+      area = areaForCircle(Fixed(0), shape.radius());
+      moment = momentForCircle(mass, Fixed(0), shape.radius(), none);
+      break;
+    }
+    case ShapeType::segment: {
+      SegmentShape<Fixed> segment(copy);
+      segment.setEndpoints(segment.a(), segment.b());
+      segment.setRadius(segment.radius());
+      area = areaForSegment(segment.a(), segment.b(), shape.radius());
+      moment = momentForSegment(mass, segment.a(), segment.b(), shape.radius());
+      break;
+    }
+    case ShapeType::poly: {
+      PolyShape<Fixed> poly(copy);
+      poly.setRadius(poly.radius());
+      const std::span<const Point> vertices = shape.vertices();
+      poly.setVerticesRaw(vertices);
+      poly.setVertices(vertices);
+      area = areaForPoly(vertices, shape.radius());
+      moment = momentForPoly(mass, vertices, none, Fixed(0));
+      // Of a line, too.
+      const Point middle = centroidForPoly(vertices.first(2));
+      expect(middle == lerp(vertices[0], vertices[1], Fixed(0.5)) ||
+                 middle == lerp(vertices[1], vertices[0], Fixed(0.5)),
+             "the centroid of a line is its middle");
+      expect(momentForPoly(mass, vertices.first(2), none, Fixed(0)) >= Fixed(0), "a line has a moment");
+      const BB<Fixed> box{shape.vertices()[0].x, shape.vertices()[0].y, shape.vertices()[0].x + Fixed(2),
+                          shape.vertices()[0].y + Fixed(1)};
+      expect(momentForBox(mass, Fixed(2), Fixed(1)) <= momentForBox(mass, box),
+             "off the centre a moment is larger");
+      break;
+    }
+  }
+  if (shape.type() != ShapeType::poly) {
+    expect(copy.sameGeometry(whole) && copy.massInfo() == whole.massInfo(),
+           "setting what is there changes nothing");
+  }
+  expect(copy.wellFormed(), "a shape that was set anew is well formed");
+  expect(shape.area() == area, "the area of the numbers is that of the shape");
+  expect(whole.moment() <= moment || shape.type() != ShapeType::circle ||
+             moment == std::numeric_limits<Fixed>::max(),
+         "about the centroid a moment is least");
+  if (sign(shape.massInfo().area) == 0)
+    expect(whole.density() == Fixed(0), "without area there is no density");
+}
+
 /// What a factory makes of a plan: refused with a type, or a shape that is whole.
 void checkShape(const ShapePlan& plan) {
   const auto shape = build<Fixed>(plan);
@@ -159,6 +219,7 @@ void checkShape(const ShapePlan& plan) {
   if (!shape) return;
   expect(shape->wellFormed(), "a shape that was made is well formed");
   expect(shape->vertices().size() <= kMaxPolyVertices, "no shape has too many vertices");
+  checkMeasures(*shape);
   Shape<Fixed> copy = *shape;
   copy.setMass(Fixed(3));
   try {

@@ -11,6 +11,7 @@
 #include <samestep/named_handlers.h>
 #include <samestep/recorder.h>
 #include <samestep/scene.h>
+#include <samestep/snapshot.h>
 #include <samestep/space_codec.h>
 
 namespace {
@@ -20,9 +21,12 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr const char* kScenes[] = {"example", "cradle", "filters", "handlers",  "incline",
                                    "stack",   "bounce", "scales",  "soft-stack"};
-constexpr std::uint32_t kMostBodies = 12;
+constexpr std::uint32_t kMostBodies = 24;
+/// What the targets are given at most.
+constexpr std::size_t kMostBytes = 4096;
 
 void write(const std::filesystem::path& path, const Bytes& bytes) {
+  if (bytes.size() > kMostBytes) return;
   std::filesystem::create_directories(path.parent_path());
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -39,6 +43,12 @@ void writeSeeds(const std::filesystem::path& folder, const std::string& name, st
   Bytes world{kind};
   encodeWorld(scene.space().state(), world);
   write(folder / "snapshot" / file, world);
+
+  // Bit 1 says that it is a whole one.
+  Bytes snapshot(1 + static_cast<std::size_t>(saveSnapshot(scene.space(), {})));
+  snapshot[0] = static_cast<std::uint8_t>(kind | 2);
+  saveSnapshot(scene.space(), std::span(snapshot).subspan(1));
+  write(folder / "snapshot" / (file + "-whole"), snapshot);
 
   Bytes recording;
   Recorder<S> recorder(scene.space(), scene.timeStep(), recording, namedHandlerWiring<S>());
@@ -69,7 +79,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   for (const char* name : kScenes) {
-    for (const int ticks : {0, 30}) {
+    for (const int ticks : {0, 5, 30}) {
       writeSeeds<Fixed>(argv[1], name, 0, ticks);
       writeSeeds<double>(argv[1], name, 1, ticks);
     }

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Worlds from bytes: refused with a reason, or one that a Space can have, that is written back to the same
-// bytes, and that can be stepped without any overflow.
-#include <samestep/space.h>
+// Worlds from bytes, bare or as a snapshot, whose size and checksum are made good: refused with a reason, or
+// one that a Space can have, that is written back to the same bytes, and that can be stepped without any
+// overflow.
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <samestep/snapshot.h>
 
 #include <algorithm>
 
@@ -32,6 +36,8 @@ std::vector<std::uint64_t> run(Bytes bytes) {
     hashes.push_back(space.hash());
     // What takes a second to solve is no finding.
     if (space.settings().iterations > 20 || space.settings().substeps > 8) return hashes;
+    // What the soft step makes of impulses and speeds that no world of its own has, may leave the range.
+    const AllowOverflows allowed(space.settings().solver == SolverKind::softStep);
     for (int i = 0; i < 2; ++i) {
       space.step(i == 0 ? ratio<S>(1, 60) : S(1));
       hashes.push_back(space.hash());
@@ -45,15 +51,57 @@ std::vector<std::uint64_t> run(Bytes bytes) {
   return hashes;
 }
 
+/// Size and checksum of a snapshot.
+void mendFrame(std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t kSizeAt = 20, kChecksum = 8;
+  if (bytes.size() < kSizeAt + 2 * kChecksum) return;
+  const auto put = [&](std::size_t at, std::uint64_t value) {
+    for (unsigned i = 0; i < 8; ++i) bytes[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
+  };
+  put(kSizeAt, bytes.size());
+  put(bytes.size() - kChecksum, XXH3_64bits(bytes.data(), bytes.size() - kChecksum));
+}
+
+template <Scalar S>
+void loadWhole(Bytes bytes, OtherRevision otherRevision) {
+  Space<S> space;
+  registerNamedHandlers(space);
+  const std::uint64_t before = space.hash();
+  try {
+    loadSnapshot(space, bytes, otherRevision, kFuzzLimits);
+  } catch (const Error& error) {
+    const auto* format = dynamic_cast<const FormatError*>(&error);
+    expect(format == nullptr || format->offset() <= bytes.size(),
+           "the offset of a fault is within the bytes");
+    expect(space.hash() == before, "bytes that are refused change nothing");
+    return;
+  }
+  expect(flawOf(space.state(), kFuzzLimits) == nullptr, "what is loaded is a world that a Space can have");
+  std::vector<std::uint8_t> again(bytes.size());
+  expect(saveSnapshot(space, std::span<std::uint8_t>(again)) == bytes.size(),
+         "a snapshot is saved again in as many bytes");
+  Space<S> copy;
+  registerNamedHandlers(copy);
+  loadSnapshot(copy, Bytes(again), OtherRevision::refuse, kFuzzLimits);
+  expect(copy.hash() == space.hash(), "a snapshot saved again is the same world");
+}
+
 }  // namespace
 }  // namespace samestep::fuzz
 
-/// The first byte chooses the number type.
+/// The first byte chooses the number type, and whether the others are a whole snapshot.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace samestep;
   using namespace samestep::fuzz;
   if (size == 0) return 0;
   const Bytes bytes(data + 1, size - 1);
+  if ((data[0] & 2) != 0) {
+    std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
+    if ((data[0] & 4) == 0) mendFrame(whole);
+    const OtherRevision other = (data[0] & 8) != 0 ? OtherRevision::refuse : OtherRevision::takeStateOnly;
+    (data[0] & 1) != 0 ? loadWhole<double>(whole, other) : loadWhole<Fixed>(whole, other);
+    return 0;
+  }
   if ((data[0] & 1) != 0) {
     run<double>(bytes);
     return 0;

@@ -47,6 +47,14 @@ struct Model {
   }
 };
 
+/// Impulses near the end of their range make the soft step leave the range of Fixed: known, see
+/// docs/fuzzing.md.
+template <Scalar S>
+void advance(Space<S>& space, S dt) {
+  const AllowOverflows allowed(space.settings().solver == SolverKind::softStep);
+  space.step(dt);
+}
+
 template <Scalar S>
 class World {
  public:
@@ -474,7 +482,7 @@ class World {
     S dt = ratio<S>(1, kTimes[byteOf(op, 1) % 4]);
     if (byteOf(op, 2) == 255) dt = number(Fixed(0), Fixed(1));
     for (int i = 0; i < 1 + byteOf(op, 3) % 4 && steps_ < kMostSteps; ++i, ++steps_) {
-      space_.step(dt);
+      advance(space_, dt);
       hashes_.push_back(space_.hash());
     }
   }
@@ -524,13 +532,13 @@ class World {
     for (int i = 0; i < 3; ++i) {
       bool refused = false, otherRefused = false;
       try {
-        space_.step(ratio<S>(1, 60));
+        advance(space_, ratio<S>(1, 60));
       } catch (const Error&) {
         refused = true;
       }
       other.dropCache();
       try {
-        other.step(ratio<S>(1, 60));
+        advance(other, ratio<S>(1, 60));
       } catch (const Error&) {
         otherRefused = true;
       }

@@ -63,6 +63,16 @@ ContactPointSet<S> Arbiter<S>::contactPointSet() const {
   return set;
 }
 
+namespace {
+
+/// Twice as far as any point of a shape of a body that moves can be: what a contact turns stays in range.
+template <Scalar S>
+bool isWithinReach(const Body<S>& body, const Vector<S>& point) {
+  return body.type() == BodyType::staticBody || within(point - body.worldCenter(), S(4 * kMaxDynamicExtent));
+}
+
+}  // namespace
+
 template <Scalar S>
 void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
   require<Fault::ImmutableNumContacts>(set.count == count());
@@ -70,10 +80,15 @@ void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
   const S size = within(set.normal, S(2)) ? length(set.normal) : S(0);
   require<Fault::ValueOutOfRange>(size >= S(1) - slack && size <= S(1) + slack,
                                   "The normal of a contact is not a unit vector.");
+  const Body<S>& first = swapped_ ? *bodies_[1] : *bodies_[0];
+  const Body<S>& second = swapped_ ? *bodies_[0] : *bodies_[1];
   for (int i = 0; i < set.count; ++i) {
     require<Fault::ValueOutOfRange>(
         within(set.points[i].pointA, kMaxWorldExtent<S>) && within(set.points[i].pointB, kMaxWorldExtent<S>),
         "A point of a contact is outside the world.");
+    require<Fault::ValueOutOfRange>(
+        isWithinReach(first, set.points[i].pointA) && isWithinReach(second, set.points[i].pointB),
+        "A point of a contact is more than 2^10 m from the centre of mass of a body that moves.");
   }
 
   pair_.localNormal = unrotate(swapped_ ? -set.normal : set.normal, bodies_[0]->rotation());

@@ -107,12 +107,12 @@ bool Body<S>::wellFormed() const {
   if (!(moment_ >= zero && moment_ <= large)) return false;
   // A centre of mass at the end of its range, on a body at the end of the world.
   const S far = kMaxWorldExtent<S> * S(3);
-  if (!within(centerOfMass_, kMaxWorldExtent<S>) || !within(center_, far)) return false;
+  if (!within(centerOfMass_, kMaxCenterOfMass<S>) || !within(center_, far)) return false;
   if (!within(velocity_, kMaxSpeed<S>) || !within(angularVelocity_, kMaxAngularSpeed<S>)) return false;
   const bool still = velocity_ == Vector<S>() && angularVelocity_ == S(0);
   if (type_ == BodyType::staticBody && !still) return false;
   return within(angle_, kMaxAngle<S>) && within(force_, kMaxForce<S>) && within(torque_, kMaxForce<S>) &&
-         within(velocityBias_, kMaxForce<S>) && within(angularVelocityBias_, kMaxForce<S>);
+         within(velocityBias_, kMaxSpeed<S>) && within(angularVelocityBias_, kMaxAngularSpeed<S>);
 }
 
 template <Scalar S>

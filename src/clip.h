@@ -21,12 +21,17 @@ SupportEdge<S> edgeTo(const PlacedShape<S>& shape, int vertex) {
   return {shape.planes[before].v0, shape.planes[vertex].v0, before, vertex};
 }
 
-/// Of the two edges at the vertex farthest along n, the one whose normal is nearer to n.
+/// Of the two edges at the vertex farthest along n, the one whose normal is nearer to n: on whose side of the
+/// line between the two normals n lies. Of nearly parallel edges rounded cosines would tell nothing.
 /// MIS: supportEdgeForPoly, supportEdgeForSegment
 template <Scalar S>
 SupportEdge<S> edgeAt(const PlacedShape<S>& shape, int vertex, const Vector<S>& n) {
   const int after = vertex + 1 < shape.count ? vertex + 1 : 0;
-  const bool before = exactDot(n, shape.planes[vertex].n) > exactDot(n, shape.planes[after].n);
+  const Vector<S>&first = shape.planes[vertex].n, &second = shape.planes[after].n;
+  const Vector<S> between = first + second;
+  // Normals that are all but opposite, as a segment's, have no line between them worth asking.
+  const bool blunt = max(abs(between.x), abs(between.y)) > ratio<S>(1, 2);
+  const bool before = blunt ? sign(exactCross(between, n)) < 0 : sign(exactDot(first - second, n)) > 0;
   return edgeTo(shape, before ? vertex : after);
 }
 

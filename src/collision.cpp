@@ -85,19 +85,34 @@ bool facesEdge(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<
          (reaches(edge.a, face.b) <= 0 || reaches(edge.b, face.b) <= 0);
 }
 
-/// Two shapes of which a face is nearest to a vertex.
+/// One point, of a vertex and the place opposite it, for edges that rounding has left none of: where one of
+/// them points at the other, its tip may lie between the places that are looked at.
+/// @param distance  of the vertex from that place, along the normal, m
 template <Scalar S>
-void touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis, S margin,
+void touchTip(const PlacedShape<S>& a, int vertexA, const PlacedShape<S>& b, int vertexB, S distance,
+              bool tipOnA, CollisionInfo<S>& info) {
+  const Vector<S> n = info.normal;
+  const Vector<S> tip = tipOnA ? a.planes[vertexA].v0 : b.planes[vertexB].v0;
+  const Vector<S> onA = tipOnA ? tip : tip - n * distance, onB = tipOnA ? tip + n * distance : tip;
+  info.push(onA + n * a.radius, onB - n * b.radius,
+            static_cast<std::uint32_t>(vertexA) << 16 | static_cast<std::uint32_t>(vertexB));
+}
+
+/// Two shapes of which a face is nearest to a vertex.
+/// @return false where rounding has left no point
+template <Scalar S>
+bool touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis, S margin,
                CollisionInfo<S>& info) {
   const PlacedShape<S>&reference = axis.onB ? b : a, &other = axis.onB ? a : b;
   const Vector<S> outward = reference.planes[axis.face].n;
-  if (!endMayTouch(other, axis.vertex, -outward)) return;
+  if (!endMayTouch(other, axis.vertex, -outward)) return true;
   const SupportEdge<S> face = edgeTo(reference, axis.face), edge = edgeAt(other, axis.vertex, -outward);
   if (axis.onB) {
     clip(edge, a.radius, face, b.radius, -outward, margin, info);
   } else {
     clip(face, a.radius, edge, b.radius, outward, margin, info);
   }
+  return info.count > 0;
 }
 
 template <Scalar S>
@@ -117,8 +132,13 @@ void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId 
   info.id = closest.id;
   if (closest.distance > a.radius + b.radius + margin || !endsMayTouch(a, b, closest)) return;
   const Vector<S> n = closest.normal;
-  clip(edgeAt(a, SupportShape<S>(a).farthest(n), n), a.radius, edgeAt(b, SupportShape<S>(b).farthest(-n), -n),
-       b.radius, n, margin, info);
+  const int onA = SupportShape<S>(a).farthest(n), onB = SupportShape<S>(b).farthest(-n);
+  clip(edgeAt(a, onA, n), a.radius, edgeAt(b, onB, -n), b.radius, n, margin, info);
+  if (info.count > 0 || (closest.vertexA < 0 && closest.vertexB < 0)) [[likely]]
+    return;
+  const bool tipOnA = closest.vertexA >= 0;
+  touchTip(a, tipOnA ? closest.vertexA : onA, b, closest.vertexB >= 0 ? closest.vertexB : onB,
+           closest.distance, tipOnA, info);
 }
 
 /// Segments and polygons, but for two segments, which have no face towards each other's ends.
@@ -131,10 +151,9 @@ void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, Col
     const FaceAxis<S> axis = bestFace(a, b, reach, start);
     info.id = axis.id();
     if (axis.separation > reach) return;
-    if (axis.separation < -kFlat<S> || facesVertex(a, b, axis) ||
-        (axis.separation <= S(0) && facesEdge(a, b, axis))) {
-      return touchFace(a, b, axis, margin, info);
-    }
+    const bool byFace = axis.separation < -kFlat<S> || facesVertex(a, b, axis) ||
+                        (axis.separation <= S(0) && facesEdge(a, b, axis));
+    if (byFace && touchFace(a, b, axis, margin, info)) return;
     // Corners near each other; thin ones may be far apart where all faces are within rounding of touching.
   }
   touchNearest(a, b, start, margin, info, stats);

@@ -51,6 +51,21 @@ bool isVertex(const HullEdge<S>* hull, int count, const Vector<S>& point) {
   return false;
 }
 
+/// Whether c lies outside of the edge from a to b; in double only where rounding cannot have moved it there.
+/// Points in line with the edge would else be put in between its ends, wherever they are, and the polygon
+/// turned inside out.
+template <Scalar S>
+bool isOutside(const Vector<S>& a, const Vector<S>& b, const Vector<S>& c) {
+  if constexpr (kIsFixed<S>) {
+    return leftOf(a, b, c);
+  } else {
+    const auto size = [](const Vector<S>& v) { return max(abs(v.x), abs(v.y)); };
+    const Vector<S> edge = b - a, twice = (a - c) + (b - c);
+    const S rounding = max(max(size(a), size(b)), size(c)) * S(0x1p-51);
+    return exactCross(edge, twice) < -rounding * (size(edge) + size(twice));
+  }
+}
+
 /// Puts p between the ends of edge `at` and leaves out what is then no corner any more.
 /// @return how many vertices `grown` has
 template <Scalar S>
@@ -62,7 +77,7 @@ int insert(const HullEdge<S>* hull, int count, int at, const MinkowskiPoint<S>& 
     const int index = at + 1 + i < count ? at + 1 + i : at + 1 + i - count;
     const int after = index + 1 < count ? index + 1 : 0;
     const MinkowskiPoint<S>& next = i + 1 < count ? hull[after].from : p;
-    if (leftOf(grown[kept - 1].from.ab, next.ab, hull[index].from.ab)) {
+    if (isOutside(grown[kept - 1].from.ab, next.ab, hull[index].from.ab)) {
       grown[kept] = hull[index];
       if (!adjacent) measure(grown[kept - 1], grown[kept].from);
       ++kept;
@@ -102,7 +117,7 @@ ClosestPoints<S> epa(const SupportPair<S>& pair, const MinkowskiPoint<S>& v0, co
     const MinkowskiPoint<S>& to = hull[at + 1 < count ? at + 1 : 0].from;
     const MinkowskiPoint<S> p = pair.farthest(perp(to.ab - from.ab));
 
-    if (isVertex(hull, count, p.ab) || iteration >= kMaxEpaIterations || !leftOf(from.ab, to.ab, p.ab)) {
+    if (isVertex(hull, count, p.ab) || iteration >= kMaxEpaIterations || !isOutside(from.ab, to.ab, p.ab)) {
       if (stats != nullptr && iteration >= kWarnEpaIterations) ++stats->highEpaIterations;
       return closestPoints(hull[at], to);
     }

@@ -25,16 +25,45 @@ struct Edge {
   MinkowskiPoint<S> v0, v1;
   Part part{};
   Vector<S> search;  // From the nearest part towards the origin.
+  S size{};          // Of the difference as far as it was seen, m; only in double.
+
+  // The end that is nearest, where one is.
+  const MinkowskiPoint<S>& corner() const { return part == Part::from ? v0 : v1; }
 };
+
+/// The larger of two coordinates.
+template <Scalar S>
+S sizeOf(const Vector<S>& v) {
+  return max(abs(v.x), abs(v.y));
+}
 
 template <Scalar S>
 bool isZero(const Vector<S>& v) {
   return v == Vector<S>();
 }
 
+/// Whether a vertex of the difference is the origin as far as signs of products with other vertices can tell.
+/// In double that is so long before it is zero: what is added to a vertex so much farther away is lost, and a
+/// search that took the rest for a direction would go in a ring.
+/// @param size  of the difference as far as it was seen, m
+template <Scalar S>
+bool isOrigin(const Vector<S>& v, [[maybe_unused]] S size) {
+  if constexpr (kIsFixed<S>) {
+    return isZero(v);
+  } else {
+    return sizeOf(v) <= size * S(0x1p-48);
+  }
+}
+
+template <Scalar S>
+void see(Edge<S>& edge) {
+  if constexpr (!kIsFixed<S>) edge.size = max(edge.size, max(sizeOf(edge.v0.ab), sizeOf(edge.v1.ab)));
+}
+
 /// Turns the edge round if need be, and finds its nearest part and the direction to search in.
 template <Scalar S>
 void look(Edge<S>& edge) {
+  see(edge);
   if (leftOf(edge.v1.ab, edge.v0.ab, Vector<S>())) std::swap(edge.v0, edge.v1);
   edge.part = nearestPart(edge.v0.ab, edge.v1.ab);
   const Vector<S> across = perp(edge.v1.ab - edge.v0.ab);
@@ -42,11 +71,28 @@ void look(Edge<S>& edge) {
     edge.search = across;
     return;
   }
-  edge.search = -(edge.part == Part::from ? edge.v0.ab : edge.v1.ab);
-  if (!isZero(edge.search)) return;
+  edge.search = -edge.corner().ab;
+  if (!isOrigin(edge.search, edge.size)) return;
   // The origin is a vertex: turn round it, edge by edge, until all lies on one side.
   edge.search = isZero(across) ? Vector<S>(S(-1), S(0)) : across;
 }
+
+/// How far an edge is from the origin, m, and what rounding may make of that.
+template <Scalar S>
+struct Reach {
+  S distance{}, rounding{};
+
+  Reach() = default;
+  explicit Reach(const Edge<S>& edge) {
+    const Vector<S> way = edge.v1.ab - edge.v0.ab;
+    distance =
+        edge.part != Part::inside ? length(edge.corner().ab) : abs(cross(way, edge.v0.ab)) / length(way);
+    rounding = edge.size * S(0x1p-44);
+  }
+  bool isFartherThan(const Reach& before) const {
+    return distance > before.distance + max(rounding, before.rounding);
+  }
+};
 
 /// MIS: closestPointsNew, for an edge found nearest.
 template <Scalar S>
@@ -61,11 +107,11 @@ ClosestPoints<S> closestPoints(const Edge<S>& edge) {
     result.vertexB = v0.b == v1.b ? v0.b : -1;
     return result;
   }
-  const MinkowskiPoint<S>& corner = edge.part == Part::from ? v0 : v1;
+  const MinkowskiPoint<S>& corner = edge.corner();
   result.vertexA = corner.a;
   result.vertexB = corner.b;
   // Two vertices in one place: all of B lies against the direction searched last.
-  result.normal = normalize(isZero(corner.ab) ? -edge.search : corner.ab);
+  result.normal = normalize(isOrigin(corner.ab, edge.size) ? -edge.search : corner.ab);
   result.distance = length(corner.ab);
   return result;
 }
@@ -92,7 +138,8 @@ bool startFrom(const SupportPair<S>& pair, std::uint32_t id, Edge<S>& edge) {
   edge.v0 = pair.vertex(a0, b0);
   edge.v1 = pair.vertex(a1, b1);
   // Two old vertices may lie inside the difference now, which is no harm but on the origin itself.
-  return !isZero(edge.v0.ab) && !isZero(edge.v1.ab);
+  see(edge);
+  return !isOrigin(edge.v0.ab, edge.size) && !isOrigin(edge.v1.ab, edge.size);
 }
 
 }  // namespace
@@ -108,13 +155,27 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
     edge.v1 = pair.farthest(-across);
   }
 
+  // In double, where rounding may send the search back to where it was: the edge before, and how near it is.
+  [[maybe_unused]] Edge<S> before;
+  [[maybe_unused]] Reach<S> least;
   for (int iteration = 1;; ++iteration) {
     look(edge);
+    if constexpr (!kIsFixed<S>) {
+      const Reach<S> reach(edge);
+      if (iteration > 1 && reach.isFartherThan(least)) {
+        return warm ? gjk(pair, 0, axis, stats) : closestPoints(before);
+      }
+      before = edge;
+      least = reach;
+    }
     const bool late = stats != nullptr && iteration >= kWarnGjkIterations;
     const Vector<S>& n = edge.search;
     const MinkowskiPoint<S> p = pair.farthest(n);
     const bool nothingNearer = exactDot(p.ab, n) <= max(exactDot(edge.v0.ab, n), exactDot(edge.v1.ab, n));
     if (nothingNearer || iteration > kMaxGjkIterations) {
+      // In double a search from two old vertices of which one all but coincides with the origin may go in a
+      // ring.
+      if (warm && !nothingNearer) return gjk(pair, 0, axis, stats);
       if (late) ++stats->highGjkIterations;
       return closestPoints(edge);
     }

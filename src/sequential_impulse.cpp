@@ -6,6 +6,48 @@
 #include "require_ieee.h"
 
 namespace samestep {
+namespace {
+
+/// How fast a body may become while contacts answer each other, m/s and rad/s: far more than it may keep, and
+/// little enough for what is computed from it, at arms of up to 2^10.5 m. One contact changes a speed by no
+/// more than 2^21, a spin by no more than 2^30.
+template <Scalar S>
+inline constexpr S kMostSpeed = S(1 << 22);
+template <Scalar S>
+inline constexpr S kMostSpin = S(1 << 19);
+/// While kept impulses are given, which may turn a body to and fro and leave it at rest: so that one more
+/// fits.
+template <Scalar S>
+inline constexpr S kMostGiven = S(1 << 29);
+
+/// Without branches, for it is asked of each contact in each pass.
+template <Scalar S>
+bool allWithin(S x, S y, S z, S limit) {
+  return (static_cast<int>(within(x, limit)) & static_cast<int>(within(y, limit)) &
+          static_cast<int>(within(z, limit))) != 0;
+}
+
+template <Scalar S>
+void holdAt(ImpulseBody<S>& body, S speed, S spin) {
+  body.velocity = heldWithin(body.velocity, speed);
+  body.angularVelocity = clamp(body.angularVelocity, -spin, spin);
+  body.biasVelocity = heldWithin(body.biasVelocity, speed);
+  body.biasAngularVelocity = clamp(body.biasAngularVelocity, -spin, spin);
+}
+
+/// Holds what impulses have made of a body's velocities; in double there is room for any.
+template <Scalar S>
+void hold(ImpulseBody<S>& body) {
+  if constexpr (!kIsFixed<S>) return;
+  if (allWithin(body.velocity.x, body.velocity.y, body.angularVelocity, kMostSpin<S>) &&
+      allWithin(body.biasVelocity.x, body.biasVelocity.y, body.biasAngularVelocity, kMostSpin<S>))
+      [[likely]] {
+    return;
+  }
+  holdAt(body, kMostSpeed<S>, kMostSpin<S>);
+}
+
+}  // namespace
 
 template <Scalar S>
 void ImpulseSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::uint32_t indexB,
@@ -31,10 +73,15 @@ void ImpulseSolver<S>::warmStart(const ImpulseRow<S>& row, S dtCoefficient) {
   const S normal = min(row.normalSum * dtCoefficient, kMaxSum<S>);
   const S tangent = clamp(row.tangentSum * dtCoefficient, -kMaxSum<S>, kMaxSum<S>);
   answer(row, normal, tangent, a.velocity, a.angularVelocity, b.velocity, b.angularVelocity);
+  if constexpr (kIsFixed<S>) {
+    for (ImpulseBody<S>* body : {&a, &b}) holdAt(*body, kMostGiven<S>, kMostGiven<S>);
+  }
 }
 
 template <Scalar S>
 void ImpulseSolver<S>::iterate() {
+  // What was given, before anything is computed from it.
+  for (ImpulseBody<S>& body : bodies) hold(body);
   for (ImpulseRow<S>& row : rows) {
     ImpulseBody<S>& a = bodies[row.bodyA];
     ImpulseBody<S>& b = bodies[row.bodyB];
@@ -42,7 +89,7 @@ void ImpulseSolver<S>::iterate() {
     const S apart =
         normalSpeed(row, b.biasVelocity - a.biasVelocity, a.biasAngularVelocity, b.biasAngularVelocity);
     const S biasBefore = row.biasSum;
-    row.biasSum = max(biasBefore + (row.bias - apart), S(0));
+    row.biasSum = clamp(biasBefore + (row.bias - apart), S(0), kMaxSum<S>);
     const S biasChange = row.biasSum - biasBefore;
 
     const Vector<S> dv = b.velocity - a.velocity;
@@ -50,7 +97,7 @@ void ImpulseSolver<S>::iterate() {
     const S tangent = tangentSpeed(row, dv, a.angularVelocity, b.angularVelocity) + row.surface;
     const S normalBefore = row.normalSum;
     row.normalSum = clamp(normalBefore - (row.bounce + normal), S(0), kMaxSum<S>);
-    const S limit = row.friction * row.normalSum;
+    const S limit = min(row.friction * row.normalSum, kMaxSum<S>);
     highWater<S>("impulses: relative speed", max(abs(normal), abs(tangent)));
     highWater<S>("impulses: friction limit", limit);
     const S tangentBefore = row.tangentSum;
@@ -65,6 +112,8 @@ void ImpulseSolver<S>::iterate() {
     }
     answer(row, row.normalSum - normalBefore, row.tangentSum - tangentBefore, a.velocity, a.angularVelocity,
            b.velocity, b.angularVelocity);
+    hold(a);
+    hold(b);
   }
 }
 

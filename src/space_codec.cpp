@@ -9,6 +9,7 @@
 
 #include "canonical_reader.h"
 #include "compact.h"
+#include "contact_row.h"
 #include "push_contacts.h"
 #include "require_ieee.h"
 
@@ -68,8 +69,10 @@ template <Scalar S>
 const char* flawOf(const Contact<S>& contact) {
   // Points of shapes at the end of their range, and those a callback may have set.
   const S far = S(1 << 23);
-  const bool good = within(contact.anchorA, far) && within(contact.anchorB, far) &&
-                    within(contact.normalSpeed, kMaxForce<S>) && within(contact.tangentSpeed, kMaxForce<S>);
+  // A push of the soft step, and what friction may make of it.
+  const bool kept = contact.normalSpeed >= S(0) && contact.normalSpeed <= kMaxSum<S> &&
+                    contact.tangentSpeed > -kMaxForce<S> && contact.tangentSpeed < kMaxForce<S>;
+  const bool good = within(contact.anchorA, far) && within(contact.anchorB, far) && kept;
   return good ? nullptr : "a contact is out of range";
 }
 

@@ -145,6 +145,9 @@ TYPED_TEST(ArbiterTest, ContactPointSetKeepsItsNumberOfPoints) {
   far.points[0].pointA = {S(7), S(7)};
   far.points[1].pointB = {kMaxWorldExtent<S> + S(1), S(0)};
   refused(far);
+  // Of a body that moves, what a point turns has a limit; a static one is not turned.
+  far.points[1].pointB = {S(1 << 11), S(0)};
+  refused(far);
 
   set.normal = {S(0), S(1)};
   set.points[0].pointA = {S(7), S(7)};

@@ -12,6 +12,7 @@
 #include <samestep/poly_shape.h>
 #include <samestep/segment_shape.h>
 
+#include "clip.h"
 #include "collision_functions.h"
 #include "support/random.h"
 #include "support/scalars.h"
@@ -441,6 +442,53 @@ TYPED_TEST(CollisionTest, LongSearchIsCounted) {
   const Placement<S> apart(TestFixture::wheel(32, S(2)), TestFixture::moved(TestFixture::at(5, 0)));
   collide(*a, *apart, 0, &stats);
   EXPECT_EQ(stats.highEpaIterations, 1u);
+}
+
+// Their normals differ by 1.4e-5 rad, whose cosine rounds to 1: the wrong one of them put contacts 1.7 m from
+// where the shapes met.
+TYPED_TEST(CollisionTest, OfNearlyParallelEdgesTheOneAcrossTheNormalIsTaken) {
+  using S = TypeParam;
+  const auto raw = [](double x, double y) { return Vector<S>(S(x), S(y)); };
+  const std::vector<Vector<S>> points = {
+      raw(-3.0524330213665962e-05, 0), raw(-3.0517578125e-05, -3.0537135899066925e-05),
+      raw(1.6875000004656613, -3.0517578125e-05), raw(3.8749999923165888, -2.3283064365386963e-10),
+      raw(-3.0524330213665962e-05, 3.8749999923165888)};
+  const Placement<S> shape(polyShapeRaw<S>(BodyId(), points), Transform<S>());
+  EXPECT_EQ(edgeAt(*shape, 2, raw(1.1641532182693481e-08, -1)).indexA, 1);
+  EXPECT_EQ(edgeAt(*shape, 2, raw(1e-3, -1)).indexA, 2);
+  // The two sides of a segment.
+  const Placement<S> segment(segmentShape<S>(BodyId(), raw(0, 0), raw(1, 0)), Transform<S>());
+  for (const int vertex : {0, 1}) {
+    EXPECT_NE(edgeAt(*segment, vertex, raw(0, 1)).indexA, edgeAt(*segment, vertex, raw(0, -1)).indexA);
+  }
+}
+
+// Their difference has 32 edges along each of which EPA has to look; with 30 iterations it gave up before.
+TYPED_TEST(CollisionTest, EpaLooksAtAllEdgesOfTwoLargePolygons) {
+  using S = TypeParam;
+  const Placement<S> a(TestFixture::wheel(32, S(2)), Transform<S>());
+  for (const int degrees : {0, 1, 3, 5}) {
+    const Placement<S> b(TestFixture::wheel(32, S(2)),
+                         Transform<S>::rigid({}, kPi<S> * ratio<S>(degrees, 180)));
+    const CollisionInfo<S> info = collide(*a, *b);
+    ASSERT_EQ(info.count, 2);
+    const auto least = [](const PlacedShape<S>& faces, const PlacedShape<S>& other) {
+      S result = S(1 << 10);
+      for (int i = 0; i < faces.count; ++i) {
+        S deepest = S(0);
+        for (int j = 0; j < other.count; ++j) {
+          deepest = max(deepest, dot(faces.planes[i].v0 - other.planes[j].v0, faces.planes[i].n));
+        }
+        result = min(result, deepest);
+      }
+      return result;
+    };
+    const S overlap = min(least(*a, *b), least(*b, *a));
+    for (int i = 0; i < info.count; ++i) {
+      const CollisionPoint<S>& p = info.points[i];
+      EXPECT_LE(dot(p.pointA - p.pointB, info.normal), overlap + S(1e-8)) << degrees;
+    }
+  }
 }
 
 TYPED_TEST(CollisionTest, ShapesOutOfOrderAreAnInternalError) {

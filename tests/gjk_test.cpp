@@ -212,6 +212,59 @@ TEST(GjkDoubleTest, EpaTakesNoVertexTwice) {
     EXPECT_NO_THROW(gjk<double>(pair, start, Vector<double>(), nullptr)) << start;
   }
 }
+
+// A vertex of the difference that all but coincides with the origin is lost in sums with other vertices. The
+// search took it for a direction and went in a ring until it gave up, with 0 for the overlap of 4 mm.
+TEST(GjkDoubleTest, AVertexThatAllButCoincidesWithTheOriginEndsNoSearchInARing) {
+  const std::vector<Vector<double>> points = {
+      {0, -2.3283064365386963e-10}, {0.3125, 1.9999999976716936}, {0.0048828125, 0.0048828125}};
+  const Shape<double> sliver = polyShape<double>(BodyId(), points);
+  const Placement<double> a(sliver, Transform<double>::rigid({}, Vector<double>(-1, 0)));
+  const Placement<double> b(sliver, Transform<double>::rigid({}, -forAngle(1.1874362826347351e-08)));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  for (std::uint32_t start = 0; start < 0x03000000u; start += 0x00010000u) {
+    CollisionStats stats;
+    const ClosestPoints<double> found = gjk<double>(pair, start, Vector<double>(), &stats);
+    EXPECT_NEAR(found.distance, -0.0040704840447681918, 1e-12) << start;
+    EXPECT_EQ(stats.highGjkIterations, 0u) << start;
+  }
+}
+
+// Each step comes nearer, or rounding has led back: here between two edges, until the search gave up 110 m
+// off.
+TEST(GjkDoubleTest, ASearchThatDoesNotComeNearerEnds) {
+  const double half = 0.34472656273283064, width = 0.34472656296566129, thin = 3.6668498069047928e-06;
+  const std::vector<Vector<double>> box = {{half, -width}, {half, width}, {-half, width}, {-half, -width}};
+  const std::vector<Vector<double>> blade = {
+      {127.90234375, -thin}, {127.90234375, thin}, {-127.90234375, thin}, {-127.90234375, -thin}};
+  const Vector<double> turn = forAngle(27.0);
+  const Placement<double> a(polyShapeRaw<double>(BodyId(), box), Transform<double>::rigid({126, -58}, turn));
+  const Placement<double> b(polyShapeRaw<double>(BodyId(), blade),
+                            Transform<double>::rigid({110.8193359375, -58.000000046566129}, -turn));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  for (const std::uint32_t start : {0u, 0x03020202u}) {
+    CollisionStats stats;
+    EXPECT_NEAR(gjk<double>(pair, start, Vector<double>(), &stats).distance, 14.173691470358605, 1e-9)
+        << start;
+    EXPECT_EQ(stats.highGjkIterations, 0u) << start;
+  }
+}
+
+// Four corners of the difference of two crossed planks lie in one line. Rounding put one of them in between
+// the ends of a short edge 250 m away, and an edge that ran back was taken for the nearest.
+TEST(GjkDoubleTest, EpaIsNotTurnedInsideOutByCornersInOneLine) {
+  const std::vector<Vector<double>> points = {{127.99999902234413, -0.062991124112159014},
+                                              {127.99999902234413, 0.068844813387840986},
+                                              {-128.00000000814907, 0.068844813387840986},
+                                              {-128.00000000814907, -0.062991124112159014}};
+  const Shape<double> plank = polyShapeRaw<double>(BodyId(), points);
+  const Vector<double> turn = forAngle(-0.1953125);
+  const Placement<double> a(plank, Transform<double>::rigid({0.0048828125, 0.1318359375}, perp(turn)));
+  const Placement<double> b(plank, Transform<double>::rigid({0.0048828125, -0.0380859375}, -turn));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  const ClosestPoints<double> found = gjk<double>(pair, 0, Vector<double>(), nullptr);
+  EXPECT_NEAR(found.distance, -127.89629997004306, 1e-9);
+}
 #endif
 
 // MIS section 13, SameVertices.

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <string_view>
+
 #include "state_hash.h"
 #include "support/scalars.h"
 #include "support/world.h"
@@ -113,6 +116,63 @@ TYPED_TEST(SpaceCodecTest, KeptContactsMustBeOnesThatShapesCanHave) {
   refused();
   pair.contacts[0].anchorB.x = S(2 * kMaxExtent + 1);
   refused();
+}
+
+// What a solver leaves: pushes up to 2^20 m/s of the lighter body, friction up to 2^10 times that.
+TYPED_TEST(SpaceCodecTest, KeptImpulsesMustBeOnesThatASolverLeaves) {
+  using S = TypeParam;
+  Space<S> space;
+  addBox<S>(space, {}, S(1), S(1), S(1));
+  addBox<S>(space, {S(0), ratio<S>(1, 2)}, S(1), S(1), S(1));
+  space.step(kTick<S>);
+  WorldState<S> world = space.state();
+  ASSERT_EQ(world.pairs.size(), 1u);
+  Contact<S>& contact = world.pairs[0].contacts[0];
+  const S most(1 << 20), unit = ratio<S>(1, 1024);
+  contact.normalSpeed = most;
+  contact.tangentSpeed = kMaxForce<S> - S(1);
+  EXPECT_EQ(flawOf(world), nullptr);
+  contact.tangentSpeed = -contact.tangentSpeed;
+  EXPECT_EQ(flawOf(world), nullptr);
+  for (const S bad : {kMaxForce<S>, -kMaxForce<S>, std::numeric_limits<S>::lowest()}) {
+    contact.tangentSpeed = bad;
+    EXPECT_NE(flawOf(world), nullptr);
+  }
+  contact.tangentSpeed = S(0);
+  for (const S bad : {most + unit, -unit}) {
+    contact.normalSpeed = bad;
+    EXPECT_NE(flawOf(world), nullptr);
+  }
+}
+
+// All of them are added to speeds that a body may have: a step holds them, and so must what is read.
+TYPED_TEST(SpaceCodecTest, AMovingBodyMustBeOneThatAStepLeaves) {
+  using S = TypeParam;
+  Space<S> space;
+  const ShapeId box = addBox<S>(space, {}, S(1), S(1), S(1));
+  const BodyId id = space.shape(box).body();
+  const auto flawWith = [&](const char* name, const auto& value) {
+    WorldState<S> world = space.state();
+    Body<S>& body = world.bodies.valueAt(id.index);
+    int found = 0;
+    const auto set = [&](const char* field, auto& now) {
+      if constexpr (requires { now = value; }) {
+        if (std::string_view(field) != name) return;
+        now = value;
+        ++found;
+      }
+    };
+    Body<S>::fields(body, set);
+    EXPECT_EQ(found, 1) << name;
+    return flawOf(world);
+  };
+  const S unit = ratio<S>(1, 1024);
+  EXPECT_EQ(flawWith("velocityBias", Vector<S>(kMaxSpeed<S>, -kMaxSpeed<S>)), nullptr);
+  EXPECT_NE(flawWith("velocityBias", Vector<S>(kMaxSpeed<S> + unit, S(0))), nullptr);
+  EXPECT_EQ(flawWith("angularVelocityBias", -kMaxAngularSpeed<S>), nullptr);
+  EXPECT_NE(flawWith("angularVelocityBias", -kMaxAngularSpeed<S> - unit), nullptr);
+  EXPECT_EQ(flawWith("centerOfMass", Vector<S>(S(0), kMaxCenterOfMass<S>)), nullptr);
+  EXPECT_NE(flawWith("centerOfMass", Vector<S>(S(0), kMaxCenterOfMass<S> + unit)), nullptr);
 }
 
 TYPED_TEST(SpaceCodecTest, IsRefusedWhereverItIsCutShort) {

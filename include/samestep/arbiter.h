@@ -174,8 +174,9 @@ class Arbiter {
   /// MIS: arbiterGetContactPointSet
   ContactPointSet<S> contactPointSet() const;
   /// Replaces normal and points for this step; the next one collides the shapes again.
-  /// @throws ImmutableNumContacts, ValueOutOfRange for a point out of the world or a normal that is no unit
-  /// vector MIS: arbiterSetContactPointSet
+  /// @throws ImmutableNumContacts, ValueOutOfRange for a normal that is no unit vector, a point out of the
+  /// world, or one more than 2^10 m from the centre of mass of a body that moves, along either axis
+  /// MIS: arbiterSetContactPointSet
   void setContactPointSet(const ContactPointSet<S>& set);
 
   /// Whether the shapes began to touch in this step. MIS: arbiterIsFirstContact
