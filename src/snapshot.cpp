@@ -31,8 +31,7 @@ SnapshotInfo readInfo(ByteReader& bytes) {
   SnapshotInfo info;
   read.get(info.version);
   if (info.version > kSnapshotVersion) failFormat(kVersionAt, "a snapshot of a later format version");
-  // A version 0 that is not this build's own has never been promised to be readable.
-  if (info.version == 0 && kSnapshotVersion != 0) failFormat(kVersionAt, "a snapshot of a trial format");
+  if (info.version == 0) failFormat(kVersionAt, "a snapshot of a trial format");
   read.get(info.revision);
   read.get(info.scalar);
   if (info.scalar != ScalarKind::fixed && info.scalar != ScalarKind::float64) {

@@ -275,6 +275,7 @@ TYPED_TEST(SnapshotTest, OtherVersionsAndScalarsAreRefusedAtTheirPlace) {
   const auto other = static_cast<std::uint8_t>(isFixed ? ScalarKind::float64 : ScalarKind::fixed);
   expectRefusedAt(0, 0x88, "not a snapshot");
   expectRefusedAt(kVersionAt, kSnapshotVersion + 1, "a snapshot of a later format version");
+  expectRefusedAt(kVersionAt, 0, "a snapshot of a trial format");
   expectRefusedAt(kScalarAt, other, "a snapshot of another scalar");
   expectRefusedAt(kScalarAt, 77, "unknown scalar");
   expectRefusedAt(kScalarAt + 2, 1, "a byte that must be zero is not");

@@ -12,9 +12,8 @@ namespace samestep {
 // A snapshot: the whole state of a world in bytes that are the same from every platform and can be read on
 // every other. docs/formats.md tells every byte. For rollback within one process, Space::save is faster.
 
-/// The format that saveSnapshot writes. 0 may still change with any release; from 1 on, loadSnapshot reads
-/// every version up to this one.
-inline constexpr std::uint32_t kSnapshotVersion = 0;
+/// The format that saveSnapshot writes; loadSnapshot reads every version from 1 up to it. 0 was a trial.
+inline constexpr std::uint32_t kSnapshotVersion = 1;
 
 /// What the first bytes of a snapshot say.
 struct SnapshotInfo {
