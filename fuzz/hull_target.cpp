@@ -207,8 +207,8 @@ void checkMeasures(const Shape<Fixed>& shape) {
   expect(whole.moment() <= moment || shape.type() != ShapeType::circle ||
              moment == std::numeric_limits<Fixed>::max(),
          "about the centroid a moment is least");
-  if (sign(shape.massInfo().area) == 0)
-    expect(whole.density() == Fixed(0), "without area there is no density");
+  const Fixed density = whole.density();
+  expect(sign(shape.massInfo().area) != 0 || density == Fixed(0), "without area there is no density");
 }
 
 /// What a factory makes of a plan: refused with a type, or a shape that is whole.
