@@ -88,6 +88,9 @@ constexpr int kMorePasses = 2;
 /// The largest inverse moment by the squared radius that a pair holds, in units of spins: 32 and more.
 constexpr std::int64_t kMostMoment = std::int64_t{1} << 32;
 
+/// What a base is held below in size, in the units of speeds: one impulse more leaves no 64 bits.
+constexpr std::int64_t kMostBase = std::int64_t{1} << 61;
+
 /// factor * x / 2^bits of an impulse.
 template <class N, int kBits>
 [[gnu::always_inline]] inline std::int64_t impulseBy(std::int32_t factor, std::int64_t x) {
@@ -249,26 +252,21 @@ void BlockSolver<S, N>::closeBlock(std::uint32_t at, int lanes) {
   }
 }
 
-/// Takes from a body's base what contacts gave its velocity: (x, y), and the spin.
+/// Takes from a body's base what contacts gave its velocity: (x, y), and the spin, in the kernel's units.
 template <Scalar S, class N>
-void BlockSolver<S, N>::give(std::uint32_t body, S x, S y, S turn) {
-  if constexpr (!kIntegers) {
-    Speed* const base = drives_[body].base;
-    base[0] += x;
-    base[1] += y;
-    base[2] += turn;
-  }
-}
-
-template <Scalar S, class N>
-void BlockSolver<S, N>::give(std::uint32_t body, std::int64_t x, std::int64_t y, std::int64_t turn,
-                             std::int64_t& misfit) requires BlockSolver<S, N>::kIntegers {
+template <class T>
+void BlockSolver<S, N>::give(std::uint32_t body, T x, T y, T turn, std::int64_t& misfit) {
   Speed* const base = drives_[body].base;
-  const std::int64_t given[3] = {x, y, turn};
+  const T given[3] = {x, y, turn};
   for (int k = 0; k < 3; ++k) {
-    const std::int64_t sum = base[k] + given[k];
-    base[k] = static_cast<Speed>(sum);
-    misfit |= sum ^ base[k];
+    if constexpr (!kIntegers) {
+      base[k] += given[k];
+    } else {
+      // What one pair gives is far below the limit, but a body may have any number of them.
+      const std::int64_t sum = clamp(base[k] + given[k], -kMostBase, kMostBase);
+      base[k] = static_cast<Speed>(sum);
+      misfit |= sum ^ base[k];
+    }
   }
 }
 
@@ -344,17 +342,24 @@ void BlockSolver<S, N>::setFriction(Block& block, int lane, S friction) {
 template <Scalar S, class N>
 bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pair<S>& pair,
                                    const Frames& of) {
-  const auto& [a, b, indexA, indexB, response, n, perMass, shareA, bounceThreshold] = of;
+  const Body<S>&a = of.a, &b = of.b;
+  const std::uint32_t indexA = of.indexA, indexB = of.indexB;
+  const PairResponse<S>& response = of.response;
+  const Vector<S> n = of.normal;
   const S masses = response.massA + response.massB;
   const bool alone = masses == S(1);
   const bool equal = masses == S(2);
-  const auto keptSum = [&](S speed) { return alone ? speed : equal ? speed + speed : speed * masses; };
+  const auto keptSum = [&](S kept) {
+    // In units of u it is no less.
+    const S speed = clamp(kept, -kMaxSum<S>, kMaxSum<S>);
+    return alone ? speed : equal ? speed + speed : speed * masses;
+  };
   // The speed that a bounce shall leave; notes a strike.
   const auto bounceOf = [&](const Contact<S>& contact, S armA, S armB) {
     const Vector<S> dv = b.velocity() - a.velocity();
     const S approach =
         dot(n.x, dv.x, n.y, dv.y) + cross(armB, b.angularVelocity(), armA, a.angularVelocity());
-    if (approach >= -bounceThreshold) return S(0);
+    if (approach >= -of.bounceThreshold) return S(0);
     if (contact.normalSpeed == S(0)) block.strikes = 1;
     if (pair.elasticity == S(0)) return S(0);
     block.bounces = 1;
@@ -439,8 +444,8 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
       reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
     }
     const PairResponse<S> held = response.at(reachA, reachB);
-    const S momentA = held.momentA * perMass;
-    const S momentB = held.momentB * perMass;
+    const S momentA = held.momentA * of.perMass;
+    const S momentB = held.momentB * of.perMass;
     if constexpr (!N::kStoresSpins) {
       block.moments.momentA[lane] = momentA;
       block.moments.momentB[lane] = momentB;
@@ -483,9 +488,9 @@ bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pai
     }
     const S x = cross(n.x, normalPart, n.y, tangentPart);
     const S y = dot(n.y, normalPart, n.x, tangentPart);
-    const S shareB = S(1) - shareA;
-    if (a.isDynamic()) give(indexA, shareA * x, shareA * y, turnA);
-    if (b.isDynamic()) give(indexB, shareB * -x, shareB * -y, -turnB);
+    const S shareB = S(1) - of.shareA;
+    if (a.isDynamic()) give(indexA, of.shareA * x, of.shareA * y, turnA, misfit);
+    if (b.isDynamic()) give(indexB, shareB * -x, shareB * -y, -turnB, misfit);
   }
   return misfit == 0;
 }

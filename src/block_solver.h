@@ -62,9 +62,8 @@ class BlockSolver {
 
   struct Frames;
   bool fillPoints(Block& block, Rest& rest, int lane, const Pair<S>& pair, const Frames& of);
-  void give(std::uint32_t body, S x, S y, S turn);
-  void give(std::uint32_t body, std::int64_t x, std::int64_t y, std::int64_t turn,
-            std::int64_t& misfit) requires kIntegers;
+  template <class T>
+  void give(std::uint32_t body, T x, T y, T turn, std::int64_t& misfit);
   void setFriction(Block& block, int lane, S friction);
   std::uint64_t integrateVelocities(std::uint32_t begin, std::uint32_t end);
   std::uint64_t integratePositions(std::uint32_t begin, std::uint32_t end);
