@@ -227,10 +227,8 @@ class SoftUnits<S, N> {
   static std::int32_t narrow(std::int64_t x) { return static_cast<std::int32_t>(x); }
   static bool fits(std::int64_t x) { return x == std::int64_t{narrow(x)}; }
   [[gnu::always_inline]] Speed speedOf(S x, int finer, std::int64_t& misfit) const {
-    if constexpr (kWide) {
-      // Speeds by radius are below 2^18 m/s, impulses below 2^21.
-      return x.raw() * (std::int64_t{1} << finer);
-    }
+    // Saturates, but only for what does not move: speeds by radius are below 2^18 m/s, impulses below 2^21.
+    if constexpr (kWide) return finer == 0 ? x.raw() : units::shifted(x.raw(), -finer);
     const std::int64_t wide = units::shifted(x.raw(), 32 - speedBits_ - finer);
     const std::int64_t in = clamp(wide, -kMost, kMost);
     misfit |= wide ^ in;

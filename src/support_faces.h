@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <type_traits>
 
@@ -58,8 +57,8 @@ struct ExactWay {
 template <class Number>
 [[gnu::always_inline]] inline int lessMask(Number a, Number b) {
   if constexpr (std::is_floating_point_v<Number>) {
-    // A difference is 0 only of equals.
-    return -static_cast<int>(std::bit_cast<std::uint64_t>(a - b) >> 63);
+    // A difference is 0 only of equals. Emscripten's library has no std::bit_cast.
+    return -static_cast<int>(__builtin_bit_cast(std::uint64_t, a - b) >> 63);
   } else {
     return -static_cast<int>(a < b);
   }
