@@ -53,8 +53,8 @@ class Crew {
     }
     lead_ = [](void* data) noexcept { (*static_cast<Lead*>(data))(); };
     leadData_ = const_cast<void*>(static_cast<const void*>(&lead));
-    led_.store(false, std::memory_order_relaxed);
-    ended_.store(false, std::memory_order_relaxed);
+    led_.store(0, std::memory_order_relaxed);
+    ended_.store(0, std::memory_order_relaxed);
     runner_->run(
         static_cast<int>(size_), [](int index, void* data) { static_cast<Crew*>(data)->join(index); }, this);
     leading_ = kNobody;
@@ -108,14 +108,14 @@ class Crew {
 
   void join(int index) {
     const std::uint32_t own = static_cast<std::uint32_t>(index);
-    if (!led_.exchange(true, std::memory_order_acq_rel)) {
+    if (led_.exchange(1, std::memory_order_acq_rel) == 0) {
       leading_ = own;
       lead_(leadData_);
-      ended_.store(true, std::memory_order_release);
+      ended_.store(1, std::memory_order_release);
     } else {
       std::uint32_t seen = 0;
       Idle idle;
-      while (!ended_.load(std::memory_order_acquire)) {
+      while (ended_.load(std::memory_order_acquire) == 0) {
         const std::uint32_t round = announced_.load(std::memory_order_acquire);
         if (round == seen) {
           idle.wait();
@@ -162,8 +162,9 @@ class Crew {
   std::uint32_t count_ = 0;
   std::uint32_t ranges_ = 0;
 
-  alignas(64) std::atomic<bool> led_{false};
-  std::atomic<bool> ended_{false};
+  // Whether there is a leader, whether it is done. Some processors have no instructions for single bytes.
+  alignas(64) std::atomic<std::uint32_t> led_{0};
+  std::atomic<std::uint32_t> ended_{0};
   alignas(64) std::atomic<std::uint32_t> announced_{0};
   alignas(64) std::atomic<std::uint32_t> unfinished_{0};
 };
