@@ -122,9 +122,7 @@ void tryVertices(const Vector<S>* points, int count, const Vector<S>* others, in
 
 template <Scalar S>
 Cores<S>::Cores(const PlacedShape<S>& first, const PlacedShape<S>& second) {
-  const auto vertex = [](const PlacedShape<S>& shape, int i) {
-    return shape.planes[i].v0;
-  };
+  const auto vertex = [](const PlacedShape<S>& shape, int i) { return shape.planes[i].v0; };
   countA = first.count;
   countB = second.count;
   origin = vertex(first, 0);
