@@ -27,8 +27,8 @@ class BlockSolver {
   void setKernel(KernelTarget target);
   /// Takes bodies, whose first stands for all that never move, and makes room for the groups, whose blocks
   /// are then to be filled.
-  /// @return false where the numbers of the step do not fit
   /// @param mostKept  no kept impulse is larger, as a speed of the lighter body, m/s
+  /// @return false where the numbers of the step do not fit
   bool begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
              const std::vector<BlockGroup>& groups, S mostKept);
   /// Readies a block, whose lanes hold anything.
@@ -45,7 +45,7 @@ class BlockSolver {
   bool strikes(std::uint32_t at) const { return blocks_[at].strikes != 0; }
   /// Makes all substeps.
   /// @param strikes  whether any point does: nothing kept from the last step says yet how the blow goes on
-  ///                 through a pile, so that springs are solved twice in each substep
+  ///                 through a pile, so that springs are solved three times in each substep
   /// @return false where a number left the range on the way: nothing is then worth anything
   bool run(bool strikes, Crew& crew);
   /// After the last one: what bounces.
