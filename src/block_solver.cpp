@@ -5,11 +5,11 @@
 
 #include <bit>
 
-#include "contact_geometry.h"
 #include "contact_row.h"
+#include "kernels/contact_passes.h"
+#include "kernels/integer_lanes.h"
 #include "kernels/kernels.h"
 #include "kernels/scalar_lanes.h"
-#include "kernels/solve_contacts.h"
 #include "require_ieee.h"
 
 namespace samestep {
@@ -25,7 +25,7 @@ ContactPasses<N> passesFor(KernelTarget target) {
       if (target == KernelTarget::simd128 && kernels::wideSimd128 != nullptr) return *kernels::wideSimd128;
       if (target == KernelTarget::sse42 && kernels::wideSse42 != nullptr) return *kernels::wideSse42;
     }
-    return kPassesOf<WideScalarLanes<S>>;
+    return kPassesOf<WideScalarLanes<S>, CoefficientLanes<OneAtATime, WideNumbers>>;
   } else if constexpr (std::same_as<N, FastNumbers>) {
     if (target == KernelTarget::avx2 && kernels::fastAvx2 != nullptr) return *kernels::fastAvx2;
     if (target == KernelTarget::neon && kernels::fastNeon != nullptr) return *kernels::fastNeon;
@@ -40,116 +40,35 @@ ContactPasses<N> passesFor(KernelTarget target) {
   }
 }
 
+/// Whether there is a point, see BlockInput.
 template <class N>
-void clearAxis(BlockAxis<N>& axis, int lane) {
-  using Coefficient = typename N::Coefficient;
-  axis.armA[lane] = axis.armB[lane] = axis.mass[lane] = Coefficient(0);
-  axis.sum[lane] = typename N::Sum(0);
-  if constexpr (N::kStoresSpins) axis.spinA[lane] = axis.spinB[lane] = Coefficient(0);
-}
+inline constexpr typename N::Coefficient kPresent{1};
+template <std::derived_from<IntegerUnits> N>
+inline constexpr std::int32_t kPresent<N> = -1;
 
 /// A point that changes nothing.
 template <class N>
-void clearPoint(ContactBlock<N>& block, BlockRest<N>& rest, int lane, int point) {
-  clearAxis(block.point[point].normal, lane);
-  clearAxis(block.point[point].tangent, lane);
+void clearPoint(ContactBlock<N>& block, BlockRest<N>& rest, BlockInput<N>& in, int lane, int point) {
+  constexpr typename N::Coefficient kNone(0);
+  auto& from = in.point[point];
+  from.armAX[lane] = from.armAY[lane] = from.armBX[lane] = from.armBY[lane] = from.present[lane] = kNone;
   block.point[point].separation[lane] = typename N::Speed(0);
+  block.point[point].normal.sum[lane] = block.point[point].tangent.sum[lane] = typename N::Sum(0);
   rest.normalTotal[point][lane] = rest.tangentTotal[point][lane] = rest.bounce[point][lane] =
       typename N::Sum(0);
 }
 
-/// Of a contact's points, from the centres of mass, each in the coordinates of its body.
-template <Scalar S>
-struct AnchorArms {
-  Vector<S> a, b;
-};
-template <Scalar S>
-AnchorArms<S> anchorArms(const Contact<S>& contact, const Body<S>& a, const Body<S>& b) {
-  return {contact.anchorA - a.centerOfMass(), contact.anchorB - b.centerOfMass()};
-}
-
-/// As respond(), from the bodies' own moments by mass.
-template <Scalar S>
-PairResponse<S> respondWith(const Body<S>& a, S momentPerMassA, const Body<S>& b, S momentPerMassB) {
-  const Scaled<S> none{};
-  if (b.inverseMass() == none) return {S(1), S(0), momentPerMassA, S(0)};
-  if (a.inverseMass() == none) return {S(0), S(1), S(0), momentPerMassB};
-  if (a.inverseMass() == b.inverseMass()) return {S(1), S(1), momentPerMassA, momentPerMassB};
-  const bool aIsLighter = a.inverseMass() > b.inverseMass();
-  const S heavy = aIsLighter ? toScalar<S>(b.inverseMass() * toScaled(a.mass()))
-                             : toScalar<S>(a.inverseMass() * toScaled(b.mass()));
-  if (aIsLighter) return {S(1), heavy, momentPerMassA, momentPerMassB * heavy};
-  return {heavy, S(1), momentPerMassA * heavy, momentPerMassB};
+/// The part of a moment.
+[[gnu::always_inline]] inline std::int32_t impulsePart(std::int32_t share, std::int32_t moment) {
+  return static_cast<std::int32_t>(units::rounded<IntegerUnits::kUnitBits>(std::int64_t{share} * moment));
 }
 
 /// How often springs are solved once more where something strikes.
 constexpr int kMorePasses = 2;
 
-/// The largest inverse moment by the squared radius that a pair holds, in units of spins: 32 and more.
-constexpr std::int64_t kMostMoment = std::int64_t{1} << 32;
-
-/// What a base is held below in size, in the units of speeds: one impulse more leaves no 64 bits.
-constexpr std::int64_t kMostBase = std::int64_t{1} << 61;
-
-/// factor * x / 2^bits of an impulse.
-template <class N, int kBits>
-[[gnu::always_inline]] inline std::int64_t impulseBy(std::int32_t factor, std::int64_t x) {
-  // Two impulses of 32 bits and a factor of one more leave no 64.
-  if constexpr (sizeof(typename N::Sum) == 4) return units::rounded<kBits>(factor * x);
-  return units::scaled<kBits>(factor, x);
-}
-
-/// One body of a pair, in units of its radius.
-template <class S, class N>
-class IntegerSide {
- public:
-  /// Where a contact point is, by the normal: across it and along it, by the radius, and along it in metres.
-  struct Place {
-    std::int32_t across, along;
-    S depth;
-  };
-
-  /// @param normal  in the body's coordinates
-  /// @param moment  how an impulse at the radius turns it, in units of spins
-  [[gnu::always_inline]] IntegerSide(const Vector<S>& normal, const Vector<S>& center, int radiusBits,
-                                     std::int64_t moment)
-      : normal_(normal),
-        center_(center),
-        x_(Units::unit(normal.x)),
-        y_(Units::unit(normal.y)),
-        radiusBits_(Units::radius(radiusBits)),
-        moment_(moment) {}
-
-  [[gnu::always_inline]] Place place(const Vector<S>& anchor) const {
-    const Vector<S> to = anchor - center_;
-    // No arm matters of what does not move.
-    if (radiusBits_ == kAnyRadiusBits) return {0, 0, dot(to, normal_)};
-    const std::int64_t x = Units::arm(to.x, radiusBits_), y = Units::arm(to.y, radiusBits_);
-    const std::int32_t across = held(units::rounded<N::kUnitBits>(x * y_ - y * x_));
-    const std::int32_t along = held(units::rounded<N::kUnitBits>(x * x_ + y * y_));
-    // To 2^-27 m and better.
-    if (radiusBits_ <= 3) [[likely]]
-      return {across, along, Units::fromArm(along, radiusBits_)};
-    return {across, along, dot(to, normal_)};
-  }
-  [[gnu::always_inline]] std::int32_t spin(std::int32_t arm, std::int64_t& misfit) const {
-    const std::int64_t spin = units::rounded<N::kUnitBits>(moment_ * arm);
-    misfit |= spin ^ static_cast<std::int32_t>(spin);
-    return static_cast<std::int32_t>(spin);
-  }
-
- private:
-  using Units = SoftUnits<S, N>;
-  [[gnu::always_inline]] static std::int32_t held(std::int64_t x) {
-    constexpr std::int64_t kOne = std::int64_t{1} << N::kUnitBits;
-    return static_cast<std::int32_t>(clamp(x, -kOne, kOne));
-  }
-
-  Vector<S> normal_, center_;
-  std::int64_t x_, y_;
-  int radiusBits_;
-  std::int64_t moment_;
-};
+/// The largest radius, in powers of two metres, at which a point along the normal is known to 2^-27 m by the
+/// unit of arms.
+constexpr int kNearBits = 3;
 
 /// A speed as a scalar, in its own unit, and back: not for numbers of 32 bits.
 template <class S, class T>
@@ -196,7 +115,9 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
     const SoftStart<S>& from = starts[i];
     if constexpr (kIntegers) {
       const int perRadius = 32 - N::kSpinBits - 2 * units_.radius(from.radiusBits);
-      moments_[i] = min(units::shifted(from.momentPerMass.raw(), perRadius), std::int64_t{1} << 44);
+      const std::int64_t moment = units::shifted(from.momentPerMass.raw(), perRadius);
+      moments_[i] = static_cast<std::int32_t>(moment);
+      misfit |= moment ^ moments_[i];
     }
     SoftBody<N>& body = bodies_[i];
     SoftDrive<N>& drive = drives_[i];
@@ -223,98 +144,169 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
 }
 
 template <Scalar S, class N>
-void BlockSolver<S, N>::openBlock(std::uint32_t at) {
+void BlockSolver<S, N>::openBlock(std::uint32_t at, int pairs, Taken& taken) {
   Block& block = blocks_[at];
   block.points = block.bounces = block.strikes = block.frictionShift = 0;
   block.roundA = block.roundB = block.stiff = 0;
   block.fixedA = block.fixedB = 0;
+  for (int lane = pairs; lane < N::kLanes; ++lane) clearLane(at, lane, taken);
 }
 
+/// Makes a lane that changes nothing.
 template <Scalar S, class N>
-void BlockSolver<S, N>::closeBlock(std::uint32_t at, int lanes) {
+void BlockSolver<S, N>::clearLane(std::uint32_t at, int lane, Taken& taken) {
   using Coefficient = typename N::Coefficient;
+  constexpr Coefficient kNone(0);
   Block& block = blocks_[at];
   Rest& rest = rests_[at];
-  for (int lane = lanes; lane < N::kLanes; ++lane) {
-    const auto bit = static_cast<std::uint8_t>(1 << lane);
-    block.fixedA = static_cast<std::uint8_t>(block.fixedA | bit);
-    block.fixedB = static_cast<std::uint8_t>(block.fixedB | bit);
-    block.bodyA[lane] = block.bodyB[lane] = 0;
-    block.count[lane] = 0;
-    block.normalX[lane] = block.normalY[lane] = block.shareA[lane] = Coefficient(0);
-    block.friction[lane] = Coefficient(0);
-    block.surface[lane] = Speed(0);
-    if constexpr (!N::kStoresSpins) {
-      block.moments.momentA[lane] = block.moments.momentB[lane] = Coefficient(0);
-    }
-    rest.pair[lane] = Rest::kNoPair;
-    for (int i = 0; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, lane, i);
-  }
+  BlockInput<N>& in = taken.input;
+  const auto bit = static_cast<std::uint8_t>(1 << lane);
+  block.fixedA = static_cast<std::uint8_t>(block.fixedA | bit);
+  block.fixedB = static_cast<std::uint8_t>(block.fixedB | bit);
+  block.bodyA[lane] = block.bodyB[lane] = 0;
+  block.count[lane] = 0;
+  block.shareA[lane] = block.friction[lane] = kNone;
+  block.surface[lane] = Speed(0);
+  rest.pair[lane] = Rest::kNoPair;
+  in.cosA[lane] = in.sinA[lane] = in.cosB[lane] = in.sinB[lane] = kNone;
+  in.normalX[lane] = in.normalY[lane] = in.momentA[lane] = in.momentB[lane] = kNone;
+  for (int i = 0; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, in, lane, i);
 }
-
-/// Takes from a body's base what contacts gave its velocity: (x, y), and the spin, in the kernel's units.
-template <Scalar S, class N>
-template <class T>
-void BlockSolver<S, N>::give(std::uint32_t body, T x, T y, T turn, std::int64_t& misfit) {
-  Speed* const base = drives_[body].base;
-  const T given[3] = {x, y, turn};
-  for (int k = 0; k < 3; ++k) {
-    if constexpr (!kIntegers) {
-      base[k] += given[k];
-    } else {
-      // What one pair gives is far below the limit, but a body may have any number of them.
-      const std::int64_t sum = clamp(base[k] + given[k], -kMostBase, kMostBase);
-      base[k] = static_cast<Speed>(sum);
-      misfit |= sum ^ base[k];
-    }
-  }
-}
-
-/// What the points of a pair are filled from.
-template <Scalar S, class N>
-struct BlockSolver<S, N>::Frames {
-  const Body<S>&a, &b;
-  std::uint32_t indexA, indexB;
-  PairResponse<S> response;
-  Vector<S> normal;
-  S perMass, shareA, bounceThreshold;
-};
 
 template <Scalar S, class N>
 bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex,
-                                std::uint32_t indexA, std::uint32_t indexB, const Body<S>& a,
-                                const Body<S>& b, bool roundA, bool roundB, S bounceThreshold) {
+                                const SoftFrame<S>& a, const SoftFrame<S>& b, bool roundA, bool roundB,
+                                Taken& taken) {
   Block& block = blocks_[at];
   Rest& rest = rests_[at];
-  const PairResponse<S> response =
-      respondWith(a, (*starts_)[indexA].momentPerMass, b, (*starts_)[indexB].momentPerMass);
-  const S masses = response.massA + response.massB;
-  const S perMass = masses == S(1) ? S(1) : masses == S(2) ? ratio<S>(1, 2) : reciprocal(masses);
+  BlockInput<N>& in = taken.input;
+  taken.pair[lane] = &pair;
+  taken.a[lane] = &a;
+  taken.b[lane] = &b;
   const auto bit = static_cast<std::uint8_t>(1 << lane);
   const auto mark = [&](std::uint8_t& bits, bool set) {
     if (set) bits = static_cast<std::uint8_t>(bits | bit);
   };
-  const Vector<S> n = worldNormal(pair, a);
-  block.bodyA[lane] = indexA;
-  block.bodyB[lane] = indexB;
+  block.bodyA[lane] = a.start;
+  block.bodyB[lane] = b.start;
   block.count[lane] = pair.count;
   block.points = max(block.points, pair.count);
-  mark(block.fixedA, !a.isDynamic());
-  mark(block.fixedB, !b.isDynamic());
+  mark(block.fixedA, a.isFixed());
+  mark(block.fixedB, b.isFixed());
   mark(block.roundA, roundA);
   mark(block.roundB, roundB);
-  mark(block.stiff, !a.isDynamic() || !b.isDynamic());
-  block.normalX[lane] = units_.unit(n.x);
-  block.normalY[lane] = units_.unit(n.y);
-  const S shareA = response.massA * perMass;
-  block.shareA[lane] = units_.unit(shareA);
+  mark(block.stiff, a.isFixed() || b.isFixed());
   setFriction(block, lane, pair.friction);
-  std::int64_t misfit = 0;
-  block.surface[lane] = units_.speed(cross(n, pair.surfaceVelocity), misfit);
   rest.pair[lane] = pairIndex;
-  for (int i = pair.count; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, lane, i);
-  const Frames frames{a, b, indexA, indexB, response, n, perMass, shareA, bounceThreshold};
-  return fillPoints(block, rest, lane, pair, frames) && misfit == 0;
+  const auto shares = units_.shares(a.mass, b.mass);
+  block.shareA[lane] = shares.a;
+  in.normalX[lane] = units_.unit(pair.localNormal.x);
+  in.normalY[lane] = units_.unit(pair.localNormal.y);
+  in.cosA[lane] = units_.unit(a.rotation.x);
+  in.sinA[lane] = units_.unit(a.rotation.y);
+  in.cosB[lane] = units_.unit(b.rotation.x);
+  in.sinB[lane] = units_.unit(b.rotation.y);
+  if constexpr (kIntegers) {
+    in.momentA[lane] = impulsePart(shares.a, moments_[a.start]);
+    in.momentB[lane] = impulsePart((1 << N::kUnitBits) - shares.a, moments_[b.start]);
+  } else {
+    Vector<S> reachA, reachB;
+    for (int i = 0; FixedNumber<S> && i < pair.count; ++i) {
+      const Vector<S> toA = a.arm(pair.contacts[i].anchorA), toB = b.arm(pair.contacts[i].anchorB);
+      reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
+      reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
+    }
+    in.momentA[lane] = heldMoment((*starts_)[a.start].momentPerMass * shares.a, reachA);
+    in.momentB[lane] = heldMoment((*starts_)[b.start].momentPerMass * (S(1) - shares.a), reachB);
+    if constexpr (!N::kStoresSpins) {
+      block.moments.momentA[lane] = in.momentA[lane];
+      block.moments.momentB[lane] = in.momentB[lane];
+    }
+  }
+  std::int64_t misfit = 0;
+  for (int i = 0; i < pair.count; ++i) {
+    const Contact<S>& contact = pair.contacts[i];
+    auto& to = in.point[i];
+    const auto put = [&](auto& x, auto& y, const Vector<S>& arm, int radiusBits) {
+      if constexpr (kIntegers) {
+        // No arm matters of what does not move.
+        const bool any = radiusBits == kAnyRadiusBits;
+        x[lane] = any ? 0 : units_.arm(arm.x, radiusBits);
+        y[lane] = any ? 0 : units_.arm(arm.y, radiusBits);
+      } else {
+        x[lane] = arm.x;
+        y[lane] = arm.y;
+      }
+    };
+    put(to.armAX, to.armAY, a.arm(contact.anchorA), a.radiusBits);
+    put(to.armBX, to.armBY, b.arm(contact.anchorB), b.radiusBits);
+    to.present[lane] = kPresent<N>;
+    const auto kept = [&](S speed) { return units_.perUnit(units_.sum(speed, misfit), shares.perSpeed); };
+    auto& point = block.point[i];
+    point.normal.sum[lane] = kept(clamp(contact.normalSpeed, S(0), kMaxSum<S>));
+    point.tangent.sum[lane] = kept(clamp(contact.tangentSpeed, -kMaxSum<S>, kMaxSum<S>));
+    rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = rest.bounce[i][lane] = typename N::Sum(0);
+  }
+  for (int i = pair.count; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, in, lane, i);
+  return misfit == 0;
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::closeBlock(std::uint32_t at, int pairs, S bounceThreshold, const Taken& taken) {
+  bool fits = passes_.prepare(taken.input, blocks_[at], bodies_.data()) == 0;
+  for (int lane = 0; lane < pairs; ++lane) fits &= placePoints(at, lane, bounceThreshold, taken);
+  return fits;
+}
+
+/// Fills what a pair takes from where its bodies are, which 32 bits do not hold, and how fast.
+template <Scalar S, class N>
+bool BlockSolver<S, N>::placePoints(std::uint32_t at, int lane, S bounceThreshold, const Taken& taken) {
+  Block& block = blocks_[at];
+  const Pair<S>& pair = *taken.pair[lane];
+  const SoftFrame<S>&a = *taken.a[lane], &b = *taken.b[lane];
+  const Vector<S> n(units_.fromUnit(block.normalX[lane]), units_.fromUnit(block.normalY[lane]));
+  const Vector<S> between = b.center - a.center;
+  const S centers = dot(n, between);
+  std::int64_t misfit = 0;
+  block.surface[lane] =
+      pair.surfaceVelocity == Vector<S>() ? Speed(0) : units_.speed(cross(n, pair.surfaceVelocity), misfit);
+  const bool near = !kIntegers || max(a.radiusBits, b.radiusBits) <= kNearBits;
+  for (int i = 0; i < pair.count; ++i) {
+    const Contact<S>& contact = pair.contacts[i];
+    const auto& tangent = block.point[i].tangent;
+    S apart;
+    if (near) [[likely]] {
+      apart = centers + (units_.fromArm(tangent.armB[lane], b.radiusBits) -
+                         units_.fromArm(tangent.armA[lane], a.radiusBits));
+    } else {
+      apart = dot(n, between + (rotate(b.arm(contact.anchorB), b.rotation) -
+                                rotate(a.arm(contact.anchorA), a.rotation)));
+    }
+    block.point[i].separation[lane] = units_.way(clamp(apart, S(-(1 << 10)), S(1 << 10)));
+    if (pair.elasticity != S(0) || contact.normalSpeed == S(0)) {
+      rests_[at].bounce[i][lane] = units_.sum(bounceOf(block, lane, i, bounceThreshold, taken), misfit);
+    }
+  }
+  return misfit == 0;
+}
+
+/// The speed that a bounce shall leave; notes a strike.
+template <Scalar S, class N>
+S BlockSolver<S, N>::bounceOf(Block& block, int lane, int point, S bounceThreshold,
+                              const Taken& taken) const {
+  const Pair<S>& pair = *taken.pair[lane];
+  const SoftFrame<S>&a = *taken.a[lane], &b = *taken.b[lane];
+  const SoftStart<S>&startA = (*starts_)[a.start], &startB = (*starts_)[b.start];
+  const auto& axis = block.point[point].normal;
+  const S approach = dot(units_.fromUnit(block.normalX[lane]), startB.velocity[0] - startA.velocity[0],
+                         units_.fromUnit(block.normalY[lane]), startB.velocity[1] - startA.velocity[1]) +
+                     cross(units_.fromArm(axis.armB[lane], b.radiusBits), startB.velocity[2],
+                           units_.fromArm(axis.armA[lane], a.radiusBits), startA.velocity[2]);
+  if (approach >= -bounceThreshold) return S(0);
+  if (pair.contacts[point].normalSpeed == S(0)) block.strikes = 1;
+  if (pair.elasticity == S(0)) return S(0);
+  block.bounces = 1;
+  return -(pair.elasticity * approach);
 }
 
 template <Scalar S, class N>
@@ -338,161 +330,17 @@ void BlockSolver<S, N>::setFriction(Block& block, int lane, S friction) {
   }
 }
 
-/// Fills the points of a pair and gives their kept impulses to the bodies.
+/// What contacts gave a velocity in the last substep is its difference from the base. Preparing has given
+/// what they kept to the velocities.
 template <Scalar S, class N>
-bool BlockSolver<S, N>::fillPoints(Block& block, Rest& rest, int lane, const Pair<S>& pair,
-                                   const Frames& of) {
-  const Body<S>&a = of.a, &b = of.b;
-  const std::uint32_t indexA = of.indexA, indexB = of.indexB;
-  const PairResponse<S>& response = of.response;
-  const Vector<S> n = of.normal;
-  const S masses = response.massA + response.massB;
-  const bool alone = masses == S(1);
-  const bool equal = masses == S(2);
-  const auto keptSum = [&](S kept) {
-    // In units of u it is no less.
-    const S speed = clamp(kept, -kMaxSum<S>, kMaxSum<S>);
-    return alone ? speed : equal ? speed + speed : speed * masses;
-  };
-  // The speed that a bounce shall leave; notes a strike.
-  const auto bounceOf = [&](const Contact<S>& contact, S armA, S armB) {
-    const Vector<S> dv = b.velocity() - a.velocity();
-    const S approach =
-        dot(n.x, dv.x, n.y, dv.y) + cross(armB, b.angularVelocity(), armA, a.angularVelocity());
-    if (approach >= -of.bounceThreshold) return S(0);
-    if (contact.normalSpeed == S(0)) block.strikes = 1;
-    if (pair.elasticity == S(0)) return S(0);
-    block.bounces = 1;
-    return -(pair.elasticity * approach);
-  };
-  const auto asksForSpeed = [&](const Contact<S>& contact) {
-    return pair.elasticity != S(0) || contact.normalSpeed == S(0);
-  };
-  // An arm by the normal is the same in the body's coordinates, where points and A's normal are kept.
-  const Vector<S> nA = pair.localNormal;
-  const Vector<S> nB = unrotate(n, b.rotation());
-  const S between = dot(n, b.worldCenter() - a.worldCenter());
-  const auto apart = [&](S depthA, S depthB) {
-    return units_.way(clamp(between + (depthB - depthA), S(-(1 << 10)), S(1 << 10)));
-  };
-  std::int64_t misfit = 0;
-  if constexpr (kIntegers) {
-    const std::int32_t share = block.shareA[lane];
-    const std::int32_t shareB = (1 << N::kUnitBits) - share;
-    const std::int64_t momentA = response.momentA == S(0) ? 0 : moments_[indexA];
-    const std::int64_t momentB = response.momentB == S(0) ? 0 : moments_[indexB];
-    const std::int64_t byA = units::scaled<N::kUnitBits>(share, momentA);
-    const std::int64_t byB = units::scaled<N::kUnitBits>(shareB, momentB);
-    if (max(byA, byB) > kMostMoment) return false;
-    const IntegerSide<S, N> sideA(nA, a.centerOfMass(), (*starts_)[indexA].radiusBits, byA);
-    const IntegerSide<S, N> sideB(nB, b.centerOfMass(), (*starts_)[indexB].radiusBits, byB);
-    std::int64_t normalPart = 0, tangentPart = 0, turnA = 0, turnB = 0;
-    for (int i = 0; i < pair.count; ++i) {
-      const Contact<S>& contact = pair.contacts[i];
-      auto& point = block.point[i];
-      const auto fill = [&](auto& axis, std::int32_t armA, std::int32_t armB, typename N::Sum kept)
-          __attribute__((always_inline)) {
-        axis.armA[lane] = armA;
-        axis.armB[lane] = armB;
-        axis.spinA[lane] = sideA.spin(armA, misfit);
-        axis.spinB[lane] = sideB.spin(armB, misfit);
-        // 1 and more, in units of masses.
-        const std::int64_t k =
-            (std::int64_t{1} << N::kUnitBits) +
-            ((std::int64_t{axis.spinA[lane]} * armA + std::int64_t{axis.spinB[lane]} * armB) >> N::kSpinBits);
-        constexpr std::uint64_t one = std::uint64_t{1} << (2 * N::kUnitBits);
-        axis.mass[lane] = static_cast<std::int32_t>((one + static_cast<std::uint64_t>(k) / 2) /
-                                                    static_cast<std::uint64_t>(k));
-        axis.sum[lane] = kept;
-        turnA += impulseBy<N, N::kSpinBits>(axis.spinA[lane], kept);
-        turnB += impulseBy<N, N::kSpinBits>(axis.spinB[lane], kept);
-        highWater<S>("contact: kept impulse u", units_.fromSum(kept));
-      };
-      const auto placeA = sideA.place(contact.anchorA);
-      const auto placeB = sideB.place(contact.anchorB);
-      const auto normalKept = units_.sum(clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>), misfit);
-      const auto tangentKept =
-          units_.sum(clamp(keptSum(contact.tangentSpeed), -kMaxSum<S>, kMaxSum<S>), misfit);
-      fill(point.normal, placeA.across, placeB.across, normalKept);
-      // r x t is r . n.
-      fill(point.tangent, placeA.along, placeB.along, tangentKept);
-      point.separation[lane] = apart(placeA.depth, placeB.depth);
-      normalPart += normalKept;
-      tangentPart += tangentKept;
-      rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = 0;
-      rest.bounce[i][lane] = 0;
-      if (asksForSpeed(contact)) {
-        rest.bounce[i][lane] =
-            units_.sum(bounceOf(contact, units_.fromArm(placeA.across, (*starts_)[indexA].radiusBits),
-                                units_.fromArm(placeB.across, (*starts_)[indexB].radiusBits)),
-                       misfit);
-      }
+void BlockSolver<S, N>::tellKept(std::uint32_t begin, std::uint32_t end) {
+  for (std::uint32_t i = begin; i < end; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Speed before = drives_[i].base[k];
+      drives_[i].base[k] = static_cast<Speed>(before - (bodies_[i].velocity[k] - before));
+      bodies_[i].velocity[k] = before;
     }
-    const auto along = [&](std::int32_t by, std::int64_t part) {
-      return impulseBy<N, N::kUnitBits>(by, part);
-    };
-    const std::int64_t x = along(block.normalX[lane], normalPart) - along(block.normalY[lane], tangentPart);
-    const std::int64_t y = along(block.normalY[lane], normalPart) + along(block.normalX[lane], tangentPart);
-    if (a.isDynamic()) give(indexA, along(share, x), along(share, y), turnA, misfit);
-    if (b.isDynamic()) give(indexB, -along(shareB, x), -along(shareB, y), -turnB, misfit);
-  } else {
-    S normalPart = S(0), tangentPart = S(0), turnA = S(0), turnB = S(0);
-    Vector<S> reachA, reachB;
-    for (int i = 0; i < pair.count; ++i) {
-      const auto [toA, toB] = anchorArms(pair.contacts[i], a, b);
-      reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
-      reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
-    }
-    const PairResponse<S> held = response.at(reachA, reachB);
-    const S momentA = held.momentA * of.perMass;
-    const S momentB = held.momentB * of.perMass;
-    if constexpr (!N::kStoresSpins) {
-      block.moments.momentA[lane] = momentA;
-      block.moments.momentB[lane] = momentB;
-    }
-    for (int i = 0; i < pair.count; ++i) {
-      const Contact<S>& contact = pair.contacts[i];
-      auto& point = block.point[i];
-      const auto fill = [&](auto& axis, S inA, S inB, S kept) {
-        const S turnPerA = momentA * inA;
-        const S turnPerB = momentB * inB;
-        axis.armA[lane] = inA;
-        axis.armB[lane] = inB;
-        axis.mass[lane] = reciprocal(S(1) + dot(turnPerA, inA, turnPerB, inB));
-        axis.sum[lane] = kept;
-        if constexpr (N::kStoresSpins) {
-          axis.spinA[lane] = turnPerA;
-          axis.spinB[lane] = turnPerB;
-        }
-        turnA += turnPerA * kept;
-        turnB += turnPerB * kept;
-        // Of a body that nothing turns the arm counts for nothing.
-        highWater<S>("contact: r x n of a body that turns", held.momentA > S(0) ? inA : S(0));
-        highWater<S>("contact: r x n of a body that turns", held.momentB > S(0) ? inB : S(0));
-        highWater<S>("contact: spin per unit of u", max(abs(turnPerA), abs(turnPerB)));
-        highWater<S>("contact: kept impulse u", kept);
-      };
-      const auto [toA, toB] = anchorArms(contact, a, b);
-      // r x t is r . n.
-      const S depthA = dot(toA, nA);
-      const S depthB = dot(toB, nB);
-      fill(point.normal, cross(toA, nA), cross(toB, nB),
-           clamp(keptSum(contact.normalSpeed), S(0), kMaxSum<S>));
-      fill(point.tangent, depthA, depthB, clamp(keptSum(contact.tangentSpeed), -kMaxSum<S>, kMaxSum<S>));
-      point.separation[lane] = apart(depthA, depthB);
-      normalPart += point.normal.sum[lane];
-      tangentPart += point.tangent.sum[lane];
-      rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = S(0);
-      rest.bounce[i][lane] =
-          asksForSpeed(contact) ? bounceOf(contact, point.normal.armA[lane], point.normal.armB[lane]) : S(0);
-    }
-    const S x = cross(n.x, normalPart, n.y, tangentPart);
-    const S y = dot(n.y, normalPart, n.x, tangentPart);
-    const S shareB = S(1) - of.shareA;
-    if (a.isDynamic()) give(indexA, of.shareA * x, of.shareA * y, turnA, misfit);
-    if (b.isDynamic()) give(indexB, shareB * -x, shareB * -y, -turnB, misfit);
   }
-  return misfit == 0;
 }
 
 template <Scalar S, class N>
@@ -502,6 +350,7 @@ bool BlockSolver<S, N>::run(bool strikes, Crew& crew) {
   const auto pass = [&](ContactPass<N> kernel) {
     left.note(passOverGroups(kernel, blocks_, rests_, *groups_, bodies_, constants_, crew));
   };
+  crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) { tellKept(begin, end); });
   for (int i = 0; i < settings_->substeps; ++i) {
     crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
       left.note(integrateVelocities(begin, end) != 0);
@@ -517,7 +366,7 @@ bool BlockSolver<S, N>::run(bool strikes, Crew& crew) {
   return true;
 }
 
-/// What contacts gave a velocity in the last substep is its difference from the base, and is given again.
+/// What contacts gave a velocity in the last substep is given again.
 template <Scalar S, class N>
 std::uint64_t BlockSolver<S, N>::integrateVelocities(std::uint32_t begin, std::uint32_t end) {
   std::uint64_t left = 0;

@@ -31,15 +31,21 @@ class BlockSolver {
   /// @return false where the numbers of the step do not fit
   bool begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
              const std::vector<BlockGroup>& groups, S mostKept);
-  /// Readies a block, whose lanes hold anything.
-  void openBlock(std::uint32_t at);
-  /// Puts a pair into a lane of a block and gives its kept impulses to the bodies.
+  /// The pairs of a block on their way into it.
+  struct Taken {
+    BlockInput<N> input;
+    const Pair<S>* pair[N::kLanes];
+    const SoftFrame<S>*a[N::kLanes], *b[N::kLanes];
+  };
+  /// Readies a block, whose lanes hold anything, for so many pairs.
+  void openBlock(std::uint32_t at, int pairs, Taken& taken);
+  /// Puts a pair into a lane of a block.
   /// @return false where a number does not fit
-  bool addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex, std::uint32_t indexA,
-               std::uint32_t indexB, const Body<S>& a, const Body<S>& b, bool roundA, bool roundB,
-               S bounceThreshold);
-  /// Empties the lanes of a block that hold no pair.
-  void closeBlock(std::uint32_t at, int lanes);
+  bool addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex,
+               const SoftFrame<S>& a, const SoftFrame<S>& b, bool roundA, bool roundB, Taken& taken);
+  /// Prepares the points of a block that has its pairs and gives their kept impulses to the bodies.
+  /// @return false where a number does not fit
+  bool closeBlock(std::uint32_t at, int pairs, S bounceThreshold, const Taken& taken);
   /// Whether any point of the block may bounce; whether any strikes.
   bool bounces(std::uint32_t at) const { return blocks_[at].bounces != 0; }
   bool strikes(std::uint32_t at) const { return blocks_[at].strikes != 0; }
@@ -60,10 +66,10 @@ class BlockSolver {
   using Speed = typename N::Speed;
   static constexpr bool kIntegers = std::derived_from<N, IntegerUnits>;
 
-  struct Frames;
-  bool fillPoints(Block& block, Rest& rest, int lane, const Pair<S>& pair, const Frames& of);
-  template <class T>
-  void give(std::uint32_t body, T x, T y, T turn, std::int64_t& misfit);
+  void clearLane(std::uint32_t at, int lane, Taken& taken);
+  bool placePoints(std::uint32_t at, int lane, S bounceThreshold, const Taken& taken);
+  S bounceOf(Block& block, int lane, int point, S bounceThreshold, const Taken& taken) const;
+  void tellKept(std::uint32_t begin, std::uint32_t end);
   void setFriction(Block& block, int lane, S friction);
   std::uint64_t integrateVelocities(std::uint32_t begin, std::uint32_t end);
   std::uint64_t integratePositions(std::uint32_t begin, std::uint32_t end);
@@ -79,7 +85,7 @@ class BlockSolver {
   std::vector<SoftDrive<N>> drives_;
   std::vector<std::uint8_t> held_;
   /// Of integers: inverse moment times mass by the squared radius, in units of spins.
-  std::vector<std::int64_t> moments_;
+  std::vector<std::int32_t> moments_;
   /// The first blockCount_ are in use; the rest keep their memory.
   std::vector<Block> blocks_;
   std::vector<Rest> rests_;

@@ -24,26 +24,26 @@ struct PlainNumbers {
 struct IntegerUnits {
   using Coefficient = std::int32_t;
   static constexpr bool kStoresSpins = true;
+  /// As many as the widest kernel takes at once, and a power of two times what any other does.
+  static constexpr int kLanes = 8;
   /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of rates, speeds by
-  /// ways.
-  static constexpr int kUnitBits = 30, kRateBits = 22;
+  /// ways; of spins per impulse.
+  static constexpr int kUnitBits = 30, kRateBits = 22, kSpinBits = 26;
 };
 
 /// Speeds, ways and impulses in 64 bits: the accuracy and the range of Q32.32.
 struct WideNumbers : IntegerUnits {
-  static constexpr int kLanes = 4;
   using Speed = std::int64_t;
   using Sum = std::int64_t;
-  static constexpr int kSpinBits = 26, kFrictionBits = 22;
+  static constexpr int kFrictionBits = 22;
 };
 
 /// All in 32 bits. Speeds and impulses have one unit for the whole step, chosen by the largest of them, and
 /// ways another.
 struct FastNumbers : IntegerUnits {
-  static constexpr int kLanes = 8;
   using Speed = std::int32_t;
   using Sum = std::int32_t;
-  static constexpr int kSpinBits = 27, kFrictionBits = 28;
+  static constexpr int kFrictionBits = 28;
   /// What speeds and impulses must stay below in size, half of it what ways must, a quarter what changes of
   /// impulses must: then no sum leaves 32 bits.
   static constexpr std::int32_t kRange = 1 << 28;
@@ -100,7 +100,25 @@ struct BlockMoments {
 template <class N>
 struct BlockMoments<N, true> {};
 
-/// Up to four pairs that share no body but such as nothing moves.
+/// What the points of a block are prepared from.
+template <class N>
+struct alignas(64) BlockInput {
+  using Coefficient = typename N::Coefficient;
+  /// Of each body.
+  Coefficient cosA[N::kLanes], sinA[N::kLanes], cosB[N::kLanes], sinB[N::kLanes];
+  /// In A's coordinates.
+  Coefficient normalX[N::kLanes], normalY[N::kLanes];
+  /// The spin that an impulse u of 1 gives each body at an arm of 1.
+  Coefficient momentA[N::kLanes], momentB[N::kLanes];
+  struct Point {
+    /// From the centres of mass, in the coordinates of each body.
+    Coefficient armAX[N::kLanes], armAY[N::kLanes], armBX[N::kLanes], armBY[N::kLanes];
+    /// 1, or all bits of an integer; 0 where the pair has no such point.
+    Coefficient present[N::kLanes];
+  } point[2];
+};
+
+/// Pairs that share no body but such as nothing moves.
 template <class N>
 struct alignas(64) ContactBlock {
   std::uint32_t bodyA[N::kLanes], bodyB[N::kLanes];
@@ -166,9 +184,17 @@ template <class N>
 using ContactPass = std::uint64_t (*)(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32_t count,
                                       SoftBody<N>* bodies, const SoftConstants<N>& constants);
 
-/// The passes of one kernel.
+/// Fills the arms, spins and masses of a block and its normals in the world, and gives the sums that its
+/// points hold to the bodies' velocities.
+/// @return not 0 where a number left the kernel's range: the results are then worth nothing
+template <class N>
+using ContactPreparation = std::uint64_t (*)(const BlockInput<N>& input, ContactBlock<N>& block,
+                                             SoftBody<N>* bodies);
+
+/// What a kernel does.
 template <class N>
 struct ContactPasses {
+  ContactPreparation<N> prepare;
   /// With springs.
   ContactPass<N> solve;
   /// Without; adds the substep's sums to the totals.

@@ -18,16 +18,6 @@ inline constexpr S kMaxFrictionRatio = S(1 << 10);
 template <Scalar S>
 inline constexpr S kMaxRelativeMoment = S(1 << 18);
 
-/// The inverse moment, held where the response to an impulse at `arm` stays in range. Only a moment far
-/// too small for the mass and size of a body is ever held.
-template <Scalar S>
-S heldMoment(S moment, const Vector<S>& arm) {
-  const S reach = max(abs(arm.x), abs(arm.y));
-  if (moment <= S(64) && reach <= S(512)) [[likely]]
-    return moment;
-  return reach <= S(8) ? moment : min(moment, S(1 << 24) / reach / reach);
-}
-
 template <Scalar S>
 S relativeMoment(const Body<S>& body, const Scaled<S>& lighterMass) {
   if (body.inverseMoment() == Scaled<S>{}) return S(0);

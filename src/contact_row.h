@@ -26,6 +26,16 @@ struct PairResponse {
 template <Scalar S>
 PairResponse<S> respond(const Body<S>& a, const Body<S>& b);
 
+/// A relative inverse moment, held where the response to an impulse at `arm` stays in range. Only a moment
+/// far too small for the mass and size of a body is ever held.
+template <Scalar S>
+[[gnu::always_inline]] inline S heldMoment(S moment, const Vector<S>& arm) {
+  const S reach = max(abs(arm.x), abs(arm.y));
+  if (moment <= S(64) && reach <= S(512)) [[likely]]
+    return moment;
+  return reach <= S(8) ? moment : min(moment, S(1 << 24) / reach / reach);
+}
+
 /// Inverse moment times mass, held in range, 1/m^2; 0 of a body that nothing turns.
 template <Scalar S>
 S momentPerMass(const Body<S>& body);

@@ -72,6 +72,8 @@ struct SoftStep {
   SoftSettings<S> settings{};
   /// The bodies that touch something; the first stands for all that never move.
   std::vector<SoftStart<S>> starts;
+  /// Of every slot of a body; only those of bodies that touch something are of this step.
+  std::vector<SoftFrame<S>> frames;
   /// Those that touch nothing, after the step.
   std::vector<SoftMotion<S>> free;
   /// Of the blocks, in their order.

@@ -27,6 +27,30 @@ struct SoftStart {
   int radiusBits = 0;
 };
 
+/// What the pairs of a body are prepared from: all of it in one cache line.
+template <Scalar S>
+struct alignas(64) SoftFrame {
+  /// The centre of mass in the world and in the body's coordinates, m.
+  Vector<S> center{}, centerOfMass{};
+  Vector<S> rotation{S(1), S(0)};
+  /// kg; 0 of what contacts leave as it is.
+  S mass{};
+  /// Which start is its own.
+  std::uint32_t start = 0;
+  std::int32_t radiusBits = 0;
+
+  bool isFixed() const { return mass == S(0); }
+  /// From the centre of mass, in the body's coordinates.
+  Vector<S> arm(const Vector<S>& anchor) const { return anchor - centerOfMass; }
+};
+
+/// How two bodies share an impulse u.
+template <class C>
+struct Shares {
+  /// The part that changes the speed of A; what a speed of the lighter body is as u, in [1, 2].
+  C a, perSpeed;
+};
+
 /// What the soft step made of it.
 template <Scalar S>
 struct SoftMotion {
@@ -74,6 +98,22 @@ template <int kBits>
   return factor * high * (std::int64_t{1} << (32 - kBits)) + rounded<kBits>(factor * low);
 }
 
+/// Fraction bits of Shares::perSpeed.
+inline constexpr int kPerSpeedBits = 29;
+
+/// Shares in units of 2^-30 and 2^-29, from masses, of which 0 is one that nothing changes.
+inline Shares<std::int32_t> shares(std::uint64_t massA, std::uint64_t massB) {
+  constexpr std::int32_t kOne = 1 << 30;
+  if (massB == 0) return {kOne, kOne / 2};
+  if (massA == 0) return {0, kOne / 2};
+  if (massA == massB) return {kOne / 2, kOne};
+  const int coarser = max(static_cast<int>(std::bit_width(massA + massB)) - 33, 0);
+  const std::uint64_t sum = (massA + massB) >> coarser;
+  const std::uint64_t heavier = max(massA, massB) >> coarser;
+  return {static_cast<std::int32_t>((((massB >> coarser) << 30) + sum / 2) / sum),
+          static_cast<std::int32_t>(((sum << kPerSpeedBits) + heavier / 2) / heavier)};
+}
+
 /// How many bits the whole part of a Q32.32 has, less than 0 for small ones.
 inline int wholeBits(std::uint64_t raw) { return static_cast<int>(std::bit_width(raw)) - 32; }
 
@@ -93,6 +133,19 @@ class SoftUnits<S, PlainNumbers<S, kSpins>> {
     return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, S(0), S(0)};
   }
 
+  static Shares<S> shares(S massA, S massB) {
+    if constexpr (FixedNumber<S>) {
+      const Shares<std::int32_t> of = units::shares(raw::magnitude(massA.raw()), raw::magnitude(massB.raw()));
+      return {S::fromRaw(std::int64_t{of.a} << 2), S::fromRaw(std::int64_t{of.perSpeed} << 3)};
+    } else {
+      if (massB == S(0)) return {S(1), S(1)};
+      if (massA == S(0)) return {S(0), S(1)};
+      if (massA == massB) return {S(1) / S(2), S(2)};
+      const S sum = massA + massB;
+      return {massB / sum, sum / max(massA, massB)};
+    }
+  }
+  static S perUnit(S kept, S perSpeed) { return kept * perSpeed; }
   static S unit(S x) { return x; }
   static S speed(S x, std::int64_t&) { return x; }
   static S turn(S x, int, std::int64_t&) { return x; }
@@ -167,6 +220,15 @@ class SoftUnits<S, N> {
     return to;
   }
 
+  static Shares<std::int32_t> shares(S massA, S massB) {
+    return units::shares(raw::magnitude(massA.raw()), raw::magnitude(massB.raw()));
+  }
+  /// A kept impulse as u.
+  [[gnu::always_inline]] static Sum perUnit(Sum kept, std::int32_t perSpeed) {
+    if (perSpeed == 1 << units::kPerSpeedBits) return kept;
+    if (perSpeed == 1 << (units::kPerSpeedBits + 1)) return kept + kept;
+    return static_cast<Sum>(units::scaled<units::kPerSpeedBits>(perSpeed, kept));
+  }
   /// Of what is in [-1, 1].
   [[gnu::always_inline]] static std::int32_t unit(S x) {
     return narrow(units::rounded<32 - N::kUnitBits>(x.raw()));

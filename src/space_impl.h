@@ -212,7 +212,12 @@ struct Space<S>::Impl : SpaceCache<S> {
   ImpulseSolver<S> solver;
   SoftStep<S> soft;
   ContactGroups groups;
-  std::vector<std::uint32_t> solvedPairs;
+  struct SolvedPair {
+    std::uint32_t pair;
+    std::uint32_t a, b;
+    bool roundA, roundB;
+  };
+  std::vector<SolvedPair> solvedPairs;
   std::vector<std::uint32_t> groupOrder;
   std::vector<std::uint32_t> solverIndex;
   std::vector<std::uint32_t> solverBodies;

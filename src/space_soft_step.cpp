@@ -21,47 +21,39 @@ int radiusBits(const Impl& impl, std::uint32_t index, const Body<S>& body) {
   return most == S(0) ? 0 : static_cast<int>(std::bit_width(raw::magnitude(most.raw()) - 1)) - 32;
 }
 
-/// How many pairs ahead bodies are fetched; pairs twice as many.
-constexpr std::uint32_t kAhead = 6;
+/// How many pairs ahead pairs and bodies are fetched.
+constexpr std::uint32_t kAhead = 8;
 
 /// Puts the pairs into blocks, group by group.
 /// @return false where a number does not fit
 template <Scalar S, class Solver, class Impl>
-bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs,
-               const SlotMap<Body<S>, BodyId>& bodies, S bounceThreshold) {
+bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs, S bounceThreshold) {
   Finding misfit, bounces, strikes;
-  const auto pairAt = [&](std::uint32_t i) -> const Pair<S>& {
-    return pairs[impl.solvedPairs[impl.groupOrder[i]]];
+  const std::vector<SoftFrame<S>>& frames = impl.soft.frames;
+  const auto solvedAt = [&](std::uint32_t i) -> const typename Impl::SolvedPair& {
+    return impl.solvedPairs[impl.groupOrder[i]];
   };
   const auto last = static_cast<std::uint32_t>(impl.groupOrder.size());
   // The lot between groups scatters what is asked for.
   const auto fetchAhead = [&](std::uint32_t i) {
-    if (i + 2 * kAhead >= last) return;
-    const Pair<S>& far = pairAt(i + 2 * kAhead);
-    for (std::uint32_t line = 0; line < sizeof(far); line += 64) {
-      __builtin_prefetch(reinterpret_cast<const char*>(&far) + line);
-    }
-    const Pair<S>& near = pairAt(i + kAhead);
-    for (const ShapeId& shape : {near.a, near.b}) {
-      const auto* body = reinterpret_cast<const char*>(&bodies.valueAt(impl.traits[shape.index].body));
-      for (std::uint32_t line = 0; line < sizeof(Body<S>); line += 64) __builtin_prefetch(body + line);
-    }
+    if (i + kAhead >= last) return;
+    const typename Impl::SolvedPair& next = solvedAt(i + kAhead);
+    const auto* pair = reinterpret_cast<const char*>(&pairs[next.pair]);
+    for (std::uint32_t line = 0; line < sizeof(Pair<S>); line += 64) __builtin_prefetch(pair + line);
+    __builtin_prefetch(&frames[next.a]);
+    __builtin_prefetch(&frames[next.b]);
   };
   const auto takeBlock = [&](std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
-    solver.openBlock(block);
+    const auto count = static_cast<int>(end - begin);
+    typename Solver::Taken taken;
+    solver.openBlock(block, count, taken);
     for (std::uint32_t i = begin; i < end; ++i) {
       fetchAhead(i);
-      const std::uint32_t index = impl.solvedPairs[impl.groupOrder[i]];
-      const Pair<S>& pair = pairs[index];
-      const ShapeTraits<S>& shapeA = impl.traits[pair.a.index];
-      const ShapeTraits<S>& shapeB = impl.traits[pair.b.index];
-      const std::uint32_t a = shapeA.body;
-      const std::uint32_t b = shapeB.body;
-      misfit.note(!solver.addPair(block, static_cast<int>(i - begin), pair, index, impl.solverIndex[a],
-                                  impl.solverIndex[b], bodies.valueAt(a), bodies.valueAt(b), shapeA.round,
-                                  shapeB.round, bounceThreshold));
+      const typename Impl::SolvedPair& solved = solvedAt(i);
+      misfit.note(!solver.addPair(block, static_cast<int>(i - begin), pairs[solved.pair], solved.pair,
+                                  frames[solved.a], frames[solved.b], solved.roundA, solved.roundB, taken));
     }
-    solver.closeBlock(block, static_cast<int>(end - begin));
+    misfit.note(!solver.closeBlock(block, count, bounceThreshold, taken));
     bounces.note(solver.bounces(block));
     strikes.note(solver.strikes(block));
   };
@@ -127,10 +119,10 @@ void Space<S>::softFindGroups() {
   for (std::uint32_t i = 0; i < state_.pairs.size(); ++i) {
     const Pair<S>& pair = state_.pairs[i];
     if (pair.solved == 0) continue;
-    const std::uint32_t a = impl.traits[pair.a.index].body;
-    const std::uint32_t b = impl.traits[pair.b.index].body;
+    const ShapeTraits<S>&shapeA = impl.traits[pair.a.index], &shapeB = impl.traits[pair.b.index];
+    const std::uint32_t a = shapeA.body, b = shapeB.body;
     impl.solverIndex[a] = impl.solverIndex[b] = 0;
-    impl.solvedPairs.push_back(i);
+    impl.solvedPairs.push_back({i, a, b, shapeA.round, shapeB.round});
     for (int k = 0; fast && k < pair.count; ++k) {
       impl.soft.mostKept =
           max(impl.soft.mostKept, max(pair.contacts[k].normalSpeed, abs(pair.contacts[k].tangentSpeed)));
@@ -151,6 +143,16 @@ void Space<S>::softTakeBodies(S dt) {
   const S keptInSubstep = damping() == S(1) ? S(1) : pow(damping(), substep);
   const S keptInStep = damping() == S(1) ? S(1) : pow(damping(), dt);
   soft.clear();
+  soft.frames.resize(state_.bodies.slots());
+  const auto frame = [&](std::uint32_t i, std::uint32_t index, int radiusBits) {
+    const Body<S>& body = state_.bodies.valueAt(i);
+    soft.frames[i] = {body.worldCenter(),
+                      body.centerOfMass(),
+                      body.rotation(),
+                      body.isDynamic() ? body.mass() : S(0),
+                      index,
+                      radiusBits};
+  };
   for (std::uint32_t i = 0; i < state_.bodies.slots(); ++i) {
     if (!state_.bodies.aliveAt(i)) continue;
     Body<S>& body = state_.bodies.valueAt(i);
@@ -168,7 +170,10 @@ void Space<S>::softTakeBodies(S dt) {
     }
     body.force_ = {};
     body.torque_ = S(0);
-    if (body.type() == BodyType::staticBody) continue;
+    if (body.type() == BodyType::staticBody) {
+      if (impl.solverIndex[i] != Impl::kNone) frame(i, 0, kAnyRadiusBits);
+      continue;
+    }
     start.velocity[0] = body.velocity().x;
     start.velocity[1] = body.velocity().y;
     start.velocity[2] = body.angularVelocity();
@@ -179,6 +184,7 @@ void Space<S>::softTakeBodies(S dt) {
       start.momentPerMass = momentPerMass(body);
       if constexpr (FixedNumber<S>) start.radiusBits = radiusBits(impl, i, body);
       impl.solverIndex[i] = soft.add(start);
+      frame(i, impl.solverIndex[i], start.radiusBits);
     }
   }
 }
@@ -201,7 +207,7 @@ void Space<S>::softTakePairs() {
       blocks = end;
     }
     return solver.begin(soft.settings, soft.starts, soft.groups, soft.mostKept) &&
-           takePairs(solver, impl, state_.pairs, state_.bodies, state_.settings.bounceThreshold);
+           takePairs(solver, impl, state_.pairs, state_.settings.bounceThreshold);
   };
   while (!soft.solvers.with(take)) soft.solvers.fallBack();
 }

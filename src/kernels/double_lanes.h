@@ -57,6 +57,11 @@ struct DoubleLanes {
                                         V change) {
     return load(of.momentB + lane) * (arm * change);
   }
+  [[gnu::always_inline]] static V arm(V v) { return v; }
+  [[gnu::always_inline]] static V spin(V moment, V arm) { return moment * arm; }
+  [[gnu::always_inline]] static V mass(V present, V spinA, V armA, V spinB, V armB) {
+    return present / (whole() + (spinA * armA + spinB * armB));
+  }
   static void note(const char*, V) {}
   /// A double leaves no range.
   [[gnu::always_inline]] static V checked(V v) { return v; }

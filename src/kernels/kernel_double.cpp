@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "require_ieee.h"
 
+#include "contact_passes.h"
 #include "double_lanes2.h"
 #include "kernels.h"
-#include "solve_contacts.h"
 
 namespace samestep::kernels {
 

@@ -6,8 +6,8 @@
 #include "kernels.h"
 
 #ifdef __AVX2__
+#include "contact_passes.h"
 #include "double_lanes4.h"
-#include "solve_contacts.h"
 
 namespace samestep::kernels {
 

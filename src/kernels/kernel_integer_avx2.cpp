@@ -3,13 +3,15 @@
 #include "kernels.h"
 
 #ifdef __AVX2__
+#include "contact_passes.h"
 #include "integers_avx2.h"
-#include "solve_contacts.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastAvx2 = &kPassesOf<FastLanes<FastAvx2>>;
-const ContactPasses<WideNumbers>* const wideAvx2 = &kPassesOf<WideLanes<WideAvx2>>;
+const ContactPasses<FastNumbers>* const fastAvx2 =
+    &kPassesOf<FastLanes<FastAvx2>, CoefficientLanes<FastAvx2, FastNumbers>>;
+const ContactPasses<WideNumbers>* const wideAvx2 =
+    &kPassesOf<WideLanes<WideAvx2>, CoefficientLanes<FastAvx2, WideNumbers>>;
 
 }  // namespace samestep::kernels
 #else

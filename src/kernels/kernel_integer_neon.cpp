@@ -2,13 +2,15 @@
 #include "kernels.h"
 
 #ifdef __aarch64__
+#include "contact_passes.h"
 #include "integers_neon.h"
-#include "solve_contacts.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastNeon = &kPassesOf<FastLanes<FastNeon>>;
-const ContactPasses<WideNumbers>* const wideNeon = &kPassesOf<WideLanes<WideNeon>>;
+const ContactPasses<FastNumbers>* const fastNeon =
+    &kPassesOf<FastLanes<FastNeon>, CoefficientLanes<FastNeon, FastNumbers>>;
+const ContactPasses<WideNumbers>* const wideNeon =
+    &kPassesOf<WideLanes<WideNeon>, CoefficientLanes<FastNeon, WideNumbers>>;
 
 }  // namespace samestep::kernels
 #else

@@ -3,13 +3,15 @@
 #include "kernels.h"
 
 #ifdef __SSE4_2__
+#include "contact_passes.h"
 #include "integers_sse42.h"
-#include "solve_contacts.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastSse42 = &kPassesOf<FastLanes<FastSse42>>;
-const ContactPasses<WideNumbers>* const wideSse42 = &kPassesOf<WideLanes<WideSse42>>;
+const ContactPasses<FastNumbers>* const fastSse42 =
+    &kPassesOf<FastLanes<FastSse42>, CoefficientLanes<FastSse42, FastNumbers>>;
+const ContactPasses<WideNumbers>* const wideSse42 =
+    &kPassesOf<WideLanes<WideSse42>, CoefficientLanes<FastSse42, WideNumbers>>;
 
 }  // namespace samestep::kernels
 #else

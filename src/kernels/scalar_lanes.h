@@ -88,6 +88,17 @@ struct ScalarLanes {
                                         const V& change) {
     return product(load(axis.spinB + lane), change);
   }
+  [[gnu::always_inline]] static V arm(const V& v) { return v; }
+  [[gnu::always_inline]] static V spin(const V& moment, const V& arm) {
+    const V spin = product(moment, arm);
+    note("contact: spin per unit of u", spin);
+    return spin;
+  }
+  [[gnu::always_inline]] static V mass(const V& present, const V& spinA, const V& armA, const V& spinB,
+                                       const V& armB) {
+    const V sum = whole() + dot2(spinA, armA, spinB, armB);
+    return {present.a * reciprocal(sum.a), present.b * reciprocal(sum.b)};
+  }
   [[gnu::always_inline]] static V soften(const Softness<V>& soft, const V& full, const V& before) {
     return dot2(soft.massScale, full, soft.impulseScale, before);
   }
