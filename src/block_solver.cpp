@@ -355,7 +355,7 @@ bool BlockSolver<S, N>::run(bool strikes, Crew& crew) {
     crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
       left.note(integrateVelocities(begin, end) != 0);
     });
-    pass(passes_.solve);
+    pass(i == 0 ? passes_.start : passes_.solve);
     for (int more = 0; strikes && more < kMorePasses; ++more) pass(passes_.solve);
     crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
       left.note(integratePositions(begin, end) != 0);

@@ -90,6 +90,9 @@ struct BlockPoint {
   BlockAxis<N> normal, tangent;
   /// Between the surfaces along the normal when the step began, m.
   alignas(32) typename N::Speed separation[N::kLanes];
+  /// How fast the surfaces may still come nearer, or, if not above 0, the speed at which a spring holds them
+  /// to overlap less: by where the bodies were when they moved last, m/s.
+  typename N::Speed target[N::kLanes];
 };
 
 /// How an impulse turns the bodies, 1/m^2: spin = moment * arm * u.
@@ -135,6 +138,8 @@ struct alignas(64) ContactBlock {
   typename N::Coefficient normalY[N::kLanes];
   /// The part of u that changes the speed of A; the rest that of B.
   typename N::Coefficient shareA[N::kLanes];
+  /// That part along the normal.
+  typename N::Coefficient pushAX[N::kLanes], pushAY[N::kLanes];
   // Takes no room where spins are kept: what follows stays aligned.
   [[no_unique_address]] BlockMoments<N> moments;
   typename N::Coefficient friction[N::kLanes];
@@ -195,8 +200,8 @@ using ContactPreparation = std::uint64_t (*)(const BlockInput<N>& input, Contact
 template <class N>
 struct ContactPasses {
   ContactPreparation<N> prepare;
-  /// With springs.
-  ContactPass<N> solve;
+  /// With springs, before any body moves; and after one did and contacts relaxed.
+  ContactPass<N> start, solve;
   /// Without; adds the substep's sums to the totals.
   ContactPass<N> relax;
 };

@@ -9,8 +9,8 @@ namespace {
 
 /// A kernel, by its lanes, and by those that it prepares coefficients by.
 template <class L, class P = L>
-inline constexpr ContactPasses<typename L::Numbers> kPassesOf = {prepareBlock<P, L>, passOver<L, true>,
-                                                                 passOver<L, false>};
+inline constexpr ContactPasses<typename L::Numbers> kPassesOf = {
+    prepareBlock<P, L>, passOver<L, Pass::start>, passOver<L, Pass::solve>, passOver<L, Pass::relax>};
 
 }  // namespace
 }  // namespace samestep

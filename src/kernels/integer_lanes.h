@@ -298,6 +298,9 @@ class CoefficientLanes {
   [[gnu::always_inline]] static V cross2(const C& a, V b, const C& c, V d) {
     return over<N::kUnitBits>(Vectors::times(a, b) - Vectors::times(c, d));
   }
+  [[gnu::always_inline]] static V product(const C& unit, V x) {
+    return over<N::kUnitBits>(Vectors::times(unit, x));
+  }
   /// Rounding may have made it larger than 1.
   [[gnu::always_inline]] static V arm(V v) {
     return Vectors::less(Vectors::greater(v, all(-kOne)), all(kOne));

@@ -21,6 +21,9 @@ template <class L, class N = typename L::Numbers>
   const V ny = L::dot2(sinA, normalAX, cosA, normalAY);
   L::store(block.normalX + lane, nx);
   L::store(block.normalY + lane, ny);
+  const C shareA = L::coefficient(block.shareA + lane);
+  L::store(block.pushAX + lane, L::product(shareA, nx));
+  L::store(block.pushAY + lane, L::product(shareA, ny));
   const C cosB = L::coefficient(in.cosB + lane);
   const C sinB = L::coefficient(in.sinB + lane);
   const V normalBX = L::dot2(cosB, nx, sinB, ny);
@@ -79,16 +82,16 @@ template <class L, class N = typename L::Numbers>
     normalPart = normalPart + normal;
     tangentPart = tangentPart + tangent;
   }
-  const C nx = L::coefficient(block.normalX + lane);
-  const C ny = L::coefficient(block.normalY + lane);
-  const V x = L::cross2(nx, normalPart, ny, tangentPart);
-  const V y = L::dot2(ny, normalPart, nx, tangentPart);
-  const C shareA = L::coefficient(block.shareA + lane);
-  const C shareB = L::whole() - shareA;
-  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane, xA - L::product(shareA, x),
-                        yA - L::product(shareA, y), turnA);
-  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane, xB + L::product(shareB, x),
-                        yB + L::product(shareB, y), turnB);
+  const C ax = L::coefficient(block.pushAX + lane);
+  const C ay = L::coefficient(block.pushAY + lane);
+  const C bx = L::coefficient(block.normalX + lane) - ax;
+  const C by = L::coefficient(block.normalY + lane) - ay;
+  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane,
+                        xA - L::cross2(ax, normalPart, ay, tangentPart),
+                        yA - L::dot2(ay, normalPart, ax, tangentPart), turnA);
+  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane,
+                        xB + L::cross2(bx, normalPart, by, tangentPart),
+                        yB + L::dot2(by, normalPart, bx, tangentPart), turnB);
 }
 
 /// @tparam P  the lanes that coefficients are prepared by

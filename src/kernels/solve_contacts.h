@@ -15,10 +15,13 @@ struct LaneMotion {
   typename L::V x, y, turn;
 };
 
+/// Which pass over the contacts it is: with springs before any body moves, with springs, or without them.
+enum class Pass { start, solve, relax };
+
 /// One pair of each lane. With springs friction comes first, against the normal impulses so far, and the
 /// normals have the last word; without them friction comes last, against what the normals then are, since it
 /// would otherwise be held by impulses that relaxing is about to lower.
-template <class L, bool kSprings, class N = typename L::Numbers>
+template <class L, Pass kPass, class N = typename L::Numbers>
 [[gnu::always_inline]] inline void solveLanes(ContactBlock<N>& block, BlockRest<N>& rest, int lane,
                                               SoftBody<N>* bodies, const SoftConstants<N>& constants,
                                               L& lanes) {
@@ -28,10 +31,6 @@ template <class L, bool kSprings, class N = typename L::Numbers>
   V bendA, bendB;
   L::gatherVelocity(bodies, block.bodyA + lane, velocityA.x, velocityA.y, velocityA.turn);
   L::gatherVelocity(bodies, block.bodyB + lane, velocityB.x, velocityB.y, velocityB.turn);
-  L::gatherMoved(bodies, block.bodyA + lane, movedA.x, movedA.y, movedA.turn, bendA);
-  L::gatherMoved(bodies, block.bodyB + lane, movedB.x, movedB.y, movedB.turn, bendB);
-  bendA = L::unless(block.roundA, lane, bendA);
-  bendB = L::unless(block.roundB, lane, bendB);
 
   const C nx = L::coefficient(block.normalX + lane);
   const C ny = L::coefficient(block.normalY + lane);
@@ -44,7 +43,14 @@ template <class L, bool kSprings, class N = typename L::Numbers>
   V tangentPart = L::zero();
   const int points = L::pointsOf(block, lane);
 
-  const V apart = L::dot2(nx, movedB.x - movedA.x, ny, movedB.y - movedA.y);
+  V apart;
+  if constexpr (kPass == Pass::relax) {
+    L::gatherMoved(bodies, block.bodyA + lane, movedA.x, movedA.y, movedA.turn, bendA);
+    L::gatherMoved(bodies, block.bodyB + lane, movedB.x, movedB.y, movedB.turn, bendB);
+    bendA = L::unless(block.roundA, lane, bendA);
+    bendB = L::unless(block.roundB, lane, bendB);
+    apart = L::dot2(nx, movedB.x - movedA.x, ny, movedB.y - movedA.y);
+  }
   const auto rub = [&]() __attribute__((always_inline)) {
     for (int i = 0; i < points; ++i) {
       auto& axis = block.point[i].tangent;
@@ -63,7 +69,7 @@ template <class L, bool kSprings, class N = typename L::Numbers>
       velocityB.turn = lanes.checked(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
       L::note("soft step: friction limit", limit);
       L::note("soft step: relative speed", speed);
-      if constexpr (!kSprings) {
+      if constexpr (kPass == Pass::relax) {
         L::store(rest.tangentTotal[i] + lane, lanes.checkedTotal(L::load(rest.tangentTotal[i] + lane) + sum));
       }
     }
@@ -74,26 +80,36 @@ template <class L, bool kSprings, class N = typename L::Numbers>
       const C armA = L::coefficient(axis.armA + lane);
       const C armB = L::coefficient(axis.armB + lane);
       const V before = L::load(axis.sum + lane);
-      // The arms of the tangent are r . n: how far a bend comes nearer.
-      const V separation = L::near(L::load(block.point[i].separation + lane) + apart +
-                                       L::crosses(armB, movedB.turn, armA, movedA.turn,  //
-                                                  L::coefficient(block.point[i].tangent.armA + lane), bendA,
-                                                  L::coefficient(block.point[i].tangent.armB + lane), bendB),
-                                   constants);
-      // Not touching yet: may come as near as it is within this substep.
-      const V gap = L::rate(separation, constants.perSubstep);
+      const C mass = L::coefficient(axis.mass + lane);
       const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
-      V correction;
-      if constexpr (kSprings) {
-        const auto soft = L::softness(block.stiff, lane, constants.softness);
-        const auto free = L::above(separation, L::zero());
-        const V apartSpeed = L::greater(L::rate(separation, soft.biasRate), L::all(-constants.pushSpeed));
-        const V target = L::select(free, gap, apartSpeed);
-        const V full = L::product(L::coefficient(axis.mass + lane), lanes.checked(speed + target));
-        correction = L::select(free, full, L::soften(soft, full, before));
+      V target, correction;
+      if constexpr (kPass == Pass::solve) {
+        target = L::load(block.point[i].target + lane);
       } else {
-        correction =
-            L::product(L::coefficient(axis.mass + lane), lanes.checked(speed + L::greater(gap, L::zero())));
+        V separation = L::load(block.point[i].separation + lane);
+        if constexpr (kPass == Pass::relax) {
+          // The arms of the tangent are r . n: how far a bend comes nearer.
+          separation = separation + apart +
+                       L::crosses(armB, movedB.turn, armA, movedA.turn,  //
+                                  L::coefficient(block.point[i].tangent.armA + lane), bendA,
+                                  L::coefficient(block.point[i].tangent.armB + lane), bendB);
+        }
+        separation = L::near(separation, constants);
+        // Not touching yet: may come as near as it is within this substep.
+        const V gap = L::rate(separation, constants.perSubstep);
+        const V apartSpeed =
+            L::greater(L::rate(separation, L::softness(block.stiff, lane, constants.softness).biasRate),
+                       L::all(-constants.pushSpeed));
+        target = L::select(L::above(separation, L::zero()), gap, apartSpeed);
+        L::store(block.point[i].target + lane, target);
+        L::note("soft step: target speed", gap);
+      }
+      if constexpr (kPass == Pass::relax) {
+        correction = L::product(mass, lanes.checked(speed + L::greater(target, L::zero())));
+      } else {
+        const auto soft = L::softness(block.stiff, lane, constants.softness);
+        const V full = L::product(mass, lanes.checked(speed + target));
+        correction = L::select(L::above(target, L::zero()), full, L::soften(soft, full, before));
       }
       const V sum = lanes.checked(L::pushing(before - correction, constants));
       L::store(axis.sum + lane, sum);
@@ -103,38 +119,39 @@ template <class L, bool kSprings, class N = typename L::Numbers>
       velocityA.turn = lanes.checked(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
       velocityB.turn = lanes.checked(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
       L::note("soft step: relative speed", speed);
-      L::note("soft step: target speed", gap);
-      if constexpr (!kSprings) {
+      if constexpr (kPass == Pass::relax) {
         L::store(rest.normalTotal[i] + lane, lanes.checkedTotal(L::load(rest.normalTotal[i] + lane) + sum));
       }
     }
   };
-  if constexpr (kSprings) {
-    rub();
+  if constexpr (kPass == Pass::relax) {
     push();
+    rub();
   } else {
-    push();
     rub();
+    push();
   }
 
-  const V x = L::cross2(nx, normalPart, ny, tangentPart);
-  const V y = L::dot2(ny, normalPart, nx, tangentPart);
-  const C shareA = L::coefficient(block.shareA + lane);
-  const C shareB = L::whole() - shareA;
-  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane, velocityA.x - L::product(shareA, x),
-                        velocityA.y - L::product(shareA, y), velocityA.turn);
-  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane, velocityB.x + L::product(shareB, x),
-                        velocityB.y + L::product(shareB, y), velocityB.turn);
+  const C ax = L::coefficient(block.pushAX + lane);
+  const C ay = L::coefficient(block.pushAY + lane);
+  const C bx = nx - ax;
+  const C by = ny - ay;
+  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane,
+                        velocityA.x - L::cross2(ax, normalPart, ay, tangentPart),
+                        velocityA.y - L::dot2(ay, normalPart, ax, tangentPart), velocityA.turn);
+  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane,
+                        velocityB.x + L::cross2(bx, normalPart, by, tangentPart),
+                        velocityB.y + L::dot2(by, normalPart, bx, tangentPart), velocityB.turn);
 }
 
-template <class L, bool kSprings, class N = typename L::Numbers>
+template <class L, Pass kPass, class N = typename L::Numbers>
 std::uint64_t passOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32_t count, SoftBody<N>* bodies,
                        const SoftConstants<N>& constants) {
   L lanes;
   for (std::uint32_t i = 0; i < count; ++i) {
     for (int lane = 0; lane < N::kLanes; lane += L::kWidth) {
       if (L::kWidth < N::kLanes && blocks[i].count[lane] == 0) break;
-      solveLanes<L, kSprings>(blocks[i], rests[i], lane, bodies, constants, lanes);
+      solveLanes<L, kPass>(blocks[i], rests[i], lane, bodies, constants, lanes);
     }
   }
   return lanes.left();
