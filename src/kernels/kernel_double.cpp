@@ -3,10 +3,10 @@
 
 #include "double_lanes2.h"
 #include "kernels.h"
-#include "solve_contacts.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<PlainNumbers<double, false>> doubleBy2 = kPassesOf<DoubleLanes2>;
+const SoftPasses<PlainNumbers<double, false>> doubleBy2 = kPassesOf<DoubleLanes2>;
 
 }  // namespace samestep::kernels

@@ -7,17 +7,17 @@
 
 #ifdef __AVX2__
 #include "double_lanes4.h"
-#include "solve_contacts.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2 = &kPassesOf<DoubleLanes4>;
+const SoftPasses<PlainNumbers<double, false>>* const doubleAvx2 = &kPassesOf<DoubleLanes4>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2 = nullptr;
+const SoftPasses<PlainNumbers<double, false>>* const doubleAvx2 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

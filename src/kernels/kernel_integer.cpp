@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "integer_lanes.h"
 #include "kernels.h"
-#include "solve_contacts.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers> fastBy1 = kPassesOf<FastLanes<OneAtATime>>;
+const SoftPasses<FastNumbers> fastBy1 = kPassesOf<FastLanes<OneAtATime>>;
 
 }  // namespace samestep::kernels

@@ -4,19 +4,20 @@
 
 #ifdef __AVX2__
 #include "integers_avx2.h"
-#include "solve_contacts.h"
+#include "integers_sse42.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastAvx2 = &kPassesOf<FastLanes<FastAvx2>>;
-const ContactPasses<WideNumbers>* const wideAvx2 = &kPassesOf<WideLanes<WideAvx2>>;
+const SoftPasses<FastNumbers>* const fastAvx2 = &kPassesOf<FastLanes<FastAvx2>, FastLanes<FastSse42>>;
+const SoftPasses<WideNumbers>* const wideAvx2 = &kPassesOf<WideLanes<WideAvx2>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastAvx2 = nullptr;
-const ContactPasses<WideNumbers>* const wideAvx2 = nullptr;
+const SoftPasses<FastNumbers>* const fastAvx2 = nullptr;
+const SoftPasses<WideNumbers>* const wideAvx2 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

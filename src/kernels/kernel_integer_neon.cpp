@@ -3,19 +3,19 @@
 
 #ifdef __aarch64__
 #include "integers_neon.h"
-#include "solve_contacts.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastNeon = &kPassesOf<FastLanes<FastNeon>>;
-const ContactPasses<WideNumbers>* const wideNeon = &kPassesOf<WideLanes<WideNeon>>;
+const SoftPasses<FastNumbers>* const fastNeon = &kPassesOf<FastLanes<FastNeon>>;
+const SoftPasses<WideNumbers>* const wideNeon = &kPassesOf<WideLanes<WideNeon>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastNeon = nullptr;
-const ContactPasses<WideNumbers>* const wideNeon = nullptr;
+const SoftPasses<FastNumbers>* const fastNeon = nullptr;
+const SoftPasses<WideNumbers>* const wideNeon = nullptr;
 
 }  // namespace samestep::kernels
 #endif

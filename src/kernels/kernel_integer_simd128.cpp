@@ -3,19 +3,19 @@
 
 #ifdef __wasm_simd128__
 #include "integers_simd128.h"
-#include "solve_contacts.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastSimd128 = &kPassesOf<FastLanes<FastSimd128>>;
-const ContactPasses<WideNumbers>* const wideSimd128 = &kPassesOf<WideLanes<WideSimd128>>;
+const SoftPasses<FastNumbers>* const fastSimd128 = &kPassesOf<FastLanes<FastSimd128>>;
+const SoftPasses<WideNumbers>* const wideSimd128 = &kPassesOf<WideLanes<WideSimd128>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastSimd128 = nullptr;
-const ContactPasses<WideNumbers>* const wideSimd128 = nullptr;
+const SoftPasses<FastNumbers>* const fastSimd128 = nullptr;
+const SoftPasses<WideNumbers>* const wideSimd128 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

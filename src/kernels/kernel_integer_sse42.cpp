@@ -4,19 +4,19 @@
 
 #ifdef __SSE4_2__
 #include "integers_sse42.h"
-#include "solve_contacts.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastSse42 = &kPassesOf<FastLanes<FastSse42>>;
-const ContactPasses<WideNumbers>* const wideSse42 = &kPassesOf<WideLanes<WideSse42>>;
+const SoftPasses<FastNumbers>* const fastSse42 = &kPassesOf<FastLanes<FastSse42>>;
+const SoftPasses<WideNumbers>* const wideSse42 = &kPassesOf<WideLanes<WideSse42>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastSse42 = nullptr;
-const ContactPasses<WideNumbers>* const wideSse42 = nullptr;
+const SoftPasses<FastNumbers>* const fastSse42 = nullptr;
+const SoftPasses<WideNumbers>* const wideSse42 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

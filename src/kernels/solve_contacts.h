@@ -140,8 +140,5 @@ std::uint64_t passOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32
   return lanes.left();
 }
 
-template <class L>
-inline constexpr ContactPasses<typename L::Numbers> kPassesOf = {passOver<L, true>, passOver<L, false>};
-
 }  // namespace
 }  // namespace samestep
