@@ -6,17 +6,17 @@
 #include <bit>
 
 #include "contact_row.h"
-#include "kernels/contact_passes.h"
 #include "kernels/integer_lanes.h"
 #include "kernels/kernels.h"
 #include "kernels/scalar_lanes.h"
+#include "kernels/soft_passes.h"
 #include "require_ieee.h"
 
 namespace samestep {
 namespace {
 
 template <class S, class N>
-ContactPasses<N> passesFor(KernelTarget target) {
+SoftPasses<N> passesFor(KernelTarget target) {
   if constexpr (std::same_as<N, WideNumbers>) {
     // A scalar that checks has one kernel, which tells.
     if constexpr (!S::kChecks) {
@@ -70,24 +70,6 @@ constexpr int kMorePasses = 2;
 /// unit of arms.
 constexpr int kNearBits = 3;
 
-/// A speed as a scalar, in its own unit, and back: not for numbers of 32 bits.
-template <class S, class T>
-S asScalar(T x) {
-  if constexpr (std::same_as<S, T>) {
-    return x;
-  } else {
-    return S::fromRaw(x);
-  }
-}
-template <class T, class S>
-T asSpeed(S x) {
-  if constexpr (std::same_as<S, T>) {
-    return x;
-  } else {
-    return static_cast<T>(x.raw());
-  }
-}
-
 }  // namespace
 
 template <Scalar S, class N>
@@ -108,7 +90,7 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
   constants_ = units_.constants(settings, kMaxSum<S>);
   bodies_.assign(starts.size(), {});
   drives_.resize(starts.size());
-  held_.assign(starts.size(), 0);
+  marks_.resize(starts.size());
   if constexpr (kIntegers) moments_.resize(starts.size());
   std::int64_t misfit = 0;
   for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -127,13 +109,12 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
     }
     body.velocity[2] = units_.turn(from.velocity[2], from.radiusBits, misfit);
     drive.push[2] = units_.turn(from.push[2], from.radiusBits, misfit);
-    if constexpr (std::same_as<N, FastNumbers>) {
-      drive.push[3] = units_.unit(from.kept);
-    } else {
-      drive.push[3] = asSpeed<Speed>(from.kept);
-    }
     for (int k = 0; k < 3; ++k) drive.base[k] = body.velocity[k];
-    drive.base[3] = Speed(0);
+    drive.push[3] = drive.base[3] = Speed(0);
+    drive.limit[0] = drive.limit[1] = units_.mostSpeed(kMaxSpeed<S>, 0);
+    drive.limit[2] = units_.mostSpeed(kMaxAngularSpeed<S>, from.radiusBits);
+    drive.limit[3] = units_.factor(from.kept);
+    marks_[i] = {0, units_.bendBits(from.radiusBits)};
   }
   blockCount_ = groups.empty() ? 0 : groups.back().end;
   if (blocks_.size() < blockCount_) {
@@ -350,119 +331,22 @@ bool BlockSolver<S, N>::run(bool strikes, Crew& crew) {
   const auto pass = [&](ContactPass<N> kernel) {
     left.note(passOverGroups(kernel, blocks_, rests_, *groups_, bodies_, constants_, crew));
   };
+  const auto bodyPass = [&](BodyPass<N> kernel) {
+    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      left.note(kernel(bodies_.data() + begin, drives_.data() + begin, marks_.data() + begin, end - begin,
+                       constants_) != 0);
+    });
+  };
   crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) { tellKept(begin, end); });
   for (int i = 0; i < settings_->substeps; ++i) {
-    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
-      left.note(integrateVelocities(begin, end) != 0);
-    });
+    bodyPass(passes_.drive);
     pass(i == 0 ? passes_.start : passes_.solve);
     for (int more = 0; strikes && more < kMorePasses; ++more) pass(passes_.solve);
-    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
-      left.note(integratePositions(begin, end) != 0);
-    });
+    bodyPass(passes_.move);
     pass(passes_.relax);
     if (left) return false;
   }
   return true;
-}
-
-/// What contacts gave a velocity in the last substep is given again.
-template <Scalar S, class N>
-std::uint64_t BlockSolver<S, N>::integrateVelocities(std::uint32_t begin, std::uint32_t end) {
-  std::uint64_t left = 0;
-  const auto hold = [&](std::uint32_t body, int k) {
-    held_[body] =
-        static_cast<std::uint8_t>(held_[body] | (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
-  };
-  if constexpr (std::same_as<N, FastNumbers>) {
-    constexpr std::int64_t kMost = N::kRange - 1;
-    const int speedBits = units_.speedBits();
-    const std::int64_t mostSpeed = min(units::shifted(kMaxSpeed<S>.raw(), 32 - speedBits), kMost);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      SoftBody<N>& body = bodies_[i];
-      SoftDrive<N>& drive = drives_[i];
-      const std::int64_t mostTurn = min(
-          units::shifted(kMaxAngularSpeed<S>.raw(), 32 - speedBits - units_.radius((*starts_)[i].radiusBits)),
-          kMost);
-      for (int k = 0; k < 3; ++k) {
-        const std::int64_t given = std::int64_t{body.velocity[k]} - drive.base[k];
-        const std::int64_t limit = k == 2 ? mostTurn : mostSpeed;
-        const std::int64_t free =
-            units::shifted(std::int64_t{body.velocity[k]} * drive.push[3], N::kUnitBits) + drive.push[k];
-        const std::int64_t base = clamp(free, -limit, limit);
-        if (base != free) [[unlikely]]
-          hold(i, k);
-        const std::int64_t speed = base + given;
-        drive.base[k] = static_cast<Speed>(base);
-        body.velocity[k] = static_cast<Speed>(speed);
-        left |= static_cast<std::uint64_t>(speed + N::kRange) >> 29;
-      }
-    }
-  } else {
-    for (std::uint32_t i = begin; i < end; ++i) {
-      SoftBody<N>& body = bodies_[i];
-      SoftDrive<N>& drive = drives_[i];
-      const S kept = asScalar<S>(drive.push[3]);
-      std::int64_t misfit = 0;
-      const S limits[3] = {kMaxSpeed<S>, kMaxSpeed<S>,
-                           asScalar<S>(units_.turn(kMaxAngularSpeed<S>, (*starts_)[i].radiusBits, misfit))};
-      for (int k = 0; k < 3; ++k) {
-        const S velocity = asScalar<S>(body.velocity[k]);
-        const S push = asScalar<S>(drive.push[k]);
-        const S given = velocity - asScalar<S>(drive.base[k]);
-        const S free = kept == S(1) ? velocity + push : mulAdd(velocity, kept, push);
-        const S base = clamp(free, -limits[k], limits[k]);
-        if (base != free) [[unlikely]]
-          hold(i, k);
-        drive.base[k] = asSpeed<Speed>(base);
-        body.velocity[k] = asSpeed<Speed>(base + given);
-      }
-    }
-  }
-  return left;
-}
-
-/// Beyond half a radian the bend is no longer a parabola; the contact is found anew next step.
-template <Scalar S, class N>
-std::uint64_t BlockSolver<S, N>::integratePositions(std::uint32_t begin, std::uint32_t end) {
-  std::uint64_t left = 0;
-  if constexpr (std::same_as<N, FastNumbers>) {
-    const std::int64_t substep = units::shifted(settings_->substep.raw(), 32 - units_.finer() - N::kUnitBits);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      SoftBody<N>& body = bodies_[i];
-      for (int k = 0; k < 3; ++k) {
-        const std::int64_t way = body.moved[k] + units::shifted(body.velocity[k] * substep, N::kUnitBits);
-        body.moved[k] = static_cast<Speed>(way);
-        left |= static_cast<std::uint64_t>(way + N::kRange / 2) >> 28;
-      }
-      // Half the square of the angle, as a way at the radius.
-      const int perRadius = units_.wayBits() + units_.radius((*starts_)[i].radiusBits);
-      const std::int64_t bend = units::shifted(std::int64_t{body.moved[2]} * body.moved[2], perRadius + 1);
-      body.moved[3] = static_cast<Speed>(
-          min(bend, min(units::shifted(1, 3 - perRadius), std::int64_t{N::kRange / 2 - 1})));
-    }
-  } else {
-    const S half = ratio<S>(1, 2);
-    const S most = ratio<S>(1, 8);
-    S substep = settings_->substep;
-    if constexpr (std::same_as<N, WideNumbers>) substep = S::fromRaw(substep.raw() << units_.finer());
-    for (std::uint32_t i = begin; i < end; ++i) {
-      SoftBody<N>& body = bodies_[i];
-      for (int k = 0; k < 3; ++k) {
-        body.moved[k] =
-            asSpeed<Speed>(mulAdd(asScalar<S>(body.velocity[k]), substep, asScalar<S>(body.moved[k])));
-      }
-      if constexpr (std::same_as<N, WideNumbers>) {
-        const int perRadius = units_.finer() + units_.radius((*starts_)[i].radiusBits);
-        const S angle = clamp(S::fromRaw(units::shifted(body.moved[2], perRadius)), S(-1), S(1));
-        body.moved[3] = min(angle * angle * half, most).raw() << perRadius;
-      } else {
-        const S angle = clamp(body.moved[2], S(-1), S(1));
-        body.moved[3] = min(angle * angle * half, most);
-      }
-    }
-  }
-  return left;
 }
 
 template <Scalar S, class N>
@@ -470,7 +354,9 @@ SoftMotion<S> BlockSolver<S, N>::motion(std::uint32_t index) const {
   const SoftStart<S>& start = (*starts_)[index];
   const SoftBody<N>& body = bodies_[index];
   SoftMotion<S> motion;
-  motion.held = held_[index];
+  const unsigned held = marks_[index].held;
+  if ((held & 3) != 0) motion.held = Body<S>::kHeldSpeed;
+  if ((held & 4) != 0) motion.held = static_cast<std::uint8_t>(motion.held | Body<S>::kHeldSpin);
   for (int k = 0; k < 3; ++k) {
     const int radius = k == 2 ? start.radiusBits : 0;
     if constexpr (std::same_as<N, FastNumbers>) {

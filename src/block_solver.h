@@ -71,8 +71,6 @@ class BlockSolver {
   S bounceOf(Block& block, int lane, int point, S bounceThreshold, const Taken& taken) const;
   void tellKept(std::uint32_t begin, std::uint32_t end);
   void setFriction(Block& block, int lane, S friction);
-  std::uint64_t integrateVelocities(std::uint32_t begin, std::uint32_t end);
-  std::uint64_t integratePositions(std::uint32_t begin, std::uint32_t end);
   void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
 
   const SoftSettings<S>* settings_ = nullptr;
@@ -80,10 +78,10 @@ class BlockSolver {
   const std::vector<BlockGroup>* groups_ = nullptr;
   SoftUnits<S, N> units_;
   SoftConstants<N> constants_{};
-  ContactPasses<N> passes_;
+  SoftPasses<N> passes_;
   std::vector<SoftBody<N>> bodies_;
   std::vector<SoftDrive<N>> drives_;
-  std::vector<std::uint8_t> held_;
+  std::vector<SoftMarks> marks_;
   /// Of integers: inverse moment times mass by the squared radius, in units of spins.
   std::vector<std::int32_t> moments_;
   /// The first blockCount_ are in use; the rest keep their memory.

@@ -62,10 +62,22 @@ struct alignas(4 * sizeof(typename N::Speed)) SoftBody {
 /// What else a substep needs of a body.
 template <class N>
 struct alignas(4 * sizeof(typename N::Speed)) SoftDrive {
-  /// Added to the velocity by each substep; the last is what damping leaves of a velocity in one.
+  /// Added to the velocity by each substep; the last is 0.
   typename N::Speed push[4];
   /// The velocity of the substep before contacts: what it is less by holds the impulses of the contacts.
+  /// The last is 0.
   typename N::Speed base[4];
+  /// What the velocity before contacts is held at; the last is what damping leaves of a velocity in a
+  /// substep, no less than 0.
+  typename N::Speed limit[4];
+};
+
+/// What is marked of a body.
+struct SoftMarks {
+  /// A bit for each of x, y and angular whose velocity had to be held at its limit.
+  std::uint8_t held;
+  /// Of integers: how far the square of a turning is shifted to be a bend, which depends on the radius.
+  std::uint8_t bendBits;
 };
 
 /// One axis of a contact point, the normal n or the tangent t = perp(n), of each lane. An impulse u is the
@@ -181,6 +193,8 @@ struct SoftConstants {
   typename N::Sum mostSum;
   /// The greatest gap and the greatest overlap that a kernel of limited range tells apart, m.
   typename N::Speed mostGap, mostOverlap;
+  /// The substep as the factor of a speed that gives the way, s.
+  typename N::Speed substep;
 };
 
 /// Passes over `count` blocks, in order.
@@ -196,14 +210,24 @@ template <class N>
 using ContactPreparation = std::uint64_t (*)(const BlockInput<N>& input, ContactBlock<N>& block,
                                              SoftBody<N>* bodies);
 
+/// Passes over `count` bodies.
+/// @return as a ContactPass
+template <class N>
+using BodyPass = std::uint64_t (*)(SoftBody<N>* bodies, SoftDrive<N>* drives, SoftMarks* marks,
+                                   std::uint32_t count, const SoftConstants<N>& constants);
+
 /// What a kernel does.
 template <class N>
-struct ContactPasses {
+struct SoftPasses {
   ContactPreparation<N> prepare;
   /// With springs, before any body moves; and after one did and contacts relaxed.
   ContactPass<N> start, solve;
   /// Without; adds the substep's sums to the totals.
   ContactPass<N> relax;
+  /// Gives bodies the velocities of a substep before contacts, and once more what contacts gave in the last.
+  BodyPass<N> drive;
+  /// Moves them.
+  BodyPass<N> move;
 };
 
 }  // namespace samestep

@@ -130,7 +130,7 @@ class SoftUnits<S, PlainNumbers<S, kSpins>> {
  public:
   bool choose(const SoftSettings<S>&, const std::vector<SoftStart<S>>&, S) { return true; }
   SoftConstants<PlainNumbers<S, kSpins>> constants(const SoftSettings<S>& of, S mostSum) const {
-    return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, S(0), S(0)};
+    return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, S(0), S(0), of.substep};
   }
 
   static Shares<S> shares(S massA, S massB) {
@@ -147,6 +147,9 @@ class SoftUnits<S, PlainNumbers<S, kSpins>> {
   }
   static S perUnit(S kept, S perSpeed) { return kept * perSpeed; }
   static S unit(S x) { return x; }
+  static S factor(S x) { return x; }
+  static S mostSpeed(S x, int) { return x; }
+  static std::uint8_t bendBits(int) { return 0; }
   static S speed(S x, std::int64_t&) { return x; }
   static S turn(S x, int, std::int64_t&) { return x; }
   static S way(S x) { return x; }
@@ -209,7 +212,10 @@ class SoftUnits<S, N> {
     std::int64_t held = 0;
     to.pushSpeed = speed(of.pushSpeed, held);
     to.mostSum = sum(mostSum, held);
-    if constexpr (!kWide) {
+    if constexpr (kWide) {
+      to.substep = of.substep.raw() << finer_;
+    } else {
+      to.substep = narrow(units::shifted(of.substep.raw(), 32 - finer_ - N::kUnitBits));
       // What is farther apart is not reached within a substep at any speed in range; what overlaps more is
       // pushed apart as if it did not.
       const std::int64_t perSubstep = max(std::int64_t{to.perSubstep}, std::int64_t{1});
@@ -232,6 +238,23 @@ class SoftUnits<S, N> {
   /// Of what is in [-1, 1].
   [[gnu::always_inline]] static std::int32_t unit(S x) {
     return narrow(units::rounded<32 - N::kUnitBits>(x.raw()));
+  }
+  /// Of a speed, in [0, 1].
+  static Speed factor(S x) {
+    if constexpr (kWide) return x.raw();
+    return unit(x);
+  }
+  /// A limit of speeds, or the largest number; of a turning by the radius, else for 0.
+  Speed mostSpeed(S x, int radiusBits) const {
+    const std::int64_t most = units::shifted(x.raw(), 32 - speedBits_ - radius(radiusBits));
+    if constexpr (kWide) return most;
+    return static_cast<Speed>(min(most, kMost));
+  }
+  /// What the bend of a kernel is told of the radius.
+  std::uint8_t bendBits(int radiusBits) const {
+    if constexpr (kWide) return static_cast<std::uint8_t>(finer_ + radius(radiusBits));
+    // Half the square. In units so coarse that less is meant, none is as large as the limit of bends.
+    return static_cast<std::uint8_t>(clamp(wayBits_ + radius(radiusBits) + 1, 1, 63));
   }
   /// A way in a body's coordinates, by its radius.
   [[gnu::always_inline]] static std::int32_t arm(S x, int radiusBits) {
@@ -268,10 +291,6 @@ class SoftUnits<S, N> {
   }
   [[gnu::always_inline]] S fromSum(Sum x) const { return S::fromRaw(units::shifted(x, speedBits_ - 32)); }
 
-  int speedBits() const { return speedBits_; }
-  int wayBits() const { return wayBits_; }
-  /// How many bits finer than speeds ways are.
-  int finer() const { return finer_; }
   /// In 64 bits no turning loses anything.
   static int radius(int bits) { return clamp(bits, kWide ? 0 : -16, kAnyRadiusBits); }
 

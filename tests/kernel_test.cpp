@@ -13,7 +13,7 @@
 
 #include "kernels/kernels.h"
 #include "kernels/scalar_lanes.h"
-#include "kernels/solve_contacts.h"
+#include "kernels/soft_passes.h"
 #include "support/random.h"
 
 namespace samestep {
@@ -57,14 +57,18 @@ constexpr std::uint32_t kBlocks = 9;
 template <class N>
 struct Work {
   std::vector<SoftBody<N>> bodies{kBodies};
+  std::vector<SoftDrive<N>> drives{kBodies};
+  std::vector<SoftMarks> marks{kBodies};
   std::vector<ContactBlock<N>> blocks{kBlocks};
   std::vector<BlockRest<N>> rests{kBlocks};
   SoftConstants<N> constants{};
 
-  std::uint64_t run(const ContactPasses<N>& passes) {
+  std::uint64_t run(const SoftPasses<N>& passes) {
     std::uint64_t left = 0;
     for (int i = 0; i < 3; ++i) {
+      left |= passes.drive(bodies.data(), drives.data(), marks.data(), kBodies, constants);
       left |= passes.solve(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
+      left |= passes.move(bodies.data(), drives.data(), marks.data(), kBodies, constants);
       left |= passes.relax(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
     }
     return left;
@@ -86,12 +90,16 @@ struct DoubleSource {
   double way() { return number(0.25); }
   double sum() { return number(4); }
   double positive() { return 4 * part(); }
+  double limit() { return 8 + 64 * part(); }
+  double kept() { return random.oneIn(2) ? 1 : part(); }
+  std::uint8_t bendBits() { return 0; }
   void constants(SoftConstants<Numbers>& to) {
     to.softness[0] = {20, 0.75, 0.25};
     to.softness[1] = {30, 0.5, 0.5};
     to.perSubstep = 240;
     to.pushSpeed = 3;
     to.mostSum = 1e6;
+    to.substep = 1.0 / 240;
   }
 };
 
@@ -113,6 +121,15 @@ struct IntegerSource {
   typename N::Sum positive() {
     return static_cast<typename N::Sum>(wide(bits) & ((std::int64_t{1} << bits) - 1));
   }
+  Speed limit() { return static_cast<Speed>(wide(bits + 1) & ((std::int64_t{2} << bits) - 1)); }
+  Speed kept() {
+    if constexpr (std::same_as<N, FastNumbers>) return random.oneIn(2) ? 1 << N::kUnitBits : part();
+    return static_cast<Speed>(random.oneIn(2) ? std::int64_t{1} << 32 : wide(32) & 0xffffffff);
+  }
+  std::uint8_t bendBits() {
+    return static_cast<std::uint8_t>(std::same_as<N, FastNumbers> ? random.between(1, 63)
+                                                                  : random.between(0, 38));
+  }
   void constants(SoftConstants<N>& to) {
     const std::int32_t one = 1 << N::kUnitBits;
     to.softness[0] = {20 << 16, one / 4 * 3, one / 4};
@@ -122,6 +139,7 @@ struct IntegerSource {
     to.mostSum = std::numeric_limits<typename N::Sum>::max() / 2;
     to.mostGap = (1 << 28) / 4;
     to.mostOverlap = 1 << 28;
+    to.substep = kept();
   }
 };
 using FastSource = IntegerSource<FastNumbers>;
@@ -137,6 +155,15 @@ Work<N> randomWork(Source& from) {
     }
     body.moved[3] = from.way();
   }
+  for (auto& drive : work.drives) {
+    for (int k = 0; k < 3; ++k) {
+      drive.push[k] = from.speed();
+      drive.base[k] = from.speed();
+      drive.limit[k] = from.limit();
+    }
+    drive.limit[3] = from.kept();
+  }
+  for (SoftMarks& mark : work.marks) mark.bendBits = from.bendBits();
   from.constants(work.constants);
   Random& random = from.random;
   for (std::uint32_t i = 0; i < kBlocks; ++i) {
@@ -198,7 +225,7 @@ bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 /// The kernels of the list that this machine runs, with their names.
 template <class N>
-using NamedPasses = std::vector<std::pair<std::string, const ContactPasses<N>*>>;
+using NamedPasses = std::vector<std::pair<std::string, const SoftPasses<N>*>>;
 
 NamedPasses<WideNumbers> wideKernels() {
   NamedPasses<WideNumbers> all;
@@ -233,6 +260,8 @@ TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange
       // What has left the range is worth nothing.
       if (left) continue;
       ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.drives, expected.drives)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.marks, expected.marks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.rests, expected.rests)) << name << ", seed " << seed;
     }
@@ -243,8 +272,8 @@ TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange
 }
 
 TEST(WideKernelTest, EveryKernelGivesTheBitsOfCheckedNumbersWhichReportNothing) {
-  const ContactPasses<WideNumbers> plain = kPassesOf<WideScalarLanes<Fixed>>;
-  const ContactPasses<WideNumbers> checked = kPassesOf<WideScalarLanes<CheckedFixed>>;
+  const SoftPasses<WideNumbers> plain = kPassesOf<WideScalarLanes<Fixed>>;
+  const SoftPasses<WideNumbers> checked = kPassesOf<WideScalarLanes<CheckedFixed>>;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
     WideSource source{Random(seed), 0};
     // Up to 2^16 m/s, and 2^16 m.
@@ -259,6 +288,8 @@ TEST(WideKernelTest, EveryKernelGivesTheBitsOfCheckedNumbersWhichReportNothing) 
       Work<WideNumbers> work = start;
       ASSERT_EQ(work.run(*passes), 0u);
       ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.drives, expected.drives)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.marks, expected.marks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.rests, expected.rests)) << name << ", seed " << seed;
     }
@@ -280,6 +311,8 @@ TEST(DoubleKernelTest, TwoAndFourAtATimeGiveTheSameBits) {
       Work<Numbers> work = start;
       ASSERT_EQ(work.run(*passes), 0u);
       ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.drives, expected.drives)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.marks, expected.marks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.rests, expected.rests)) << name << ", seed " << seed;
     }

@@ -63,10 +63,25 @@ struct DoubleLanes {
     return present / (whole() + (spinA * armA + spinB * armB));
   }
   static void note(const char*, V) {}
+  [[gnu::always_inline]] static V factor(double x) { return all(x); }
+  [[gnu::always_inline]] static V addProduct(V x, V factor, V to) { return x * factor + to; }
+  [[gnu::always_inline]] static bool differ(V a, V b) {
+    const M which = a != b;
+    std::int64_t any = 0;
+    for (int i = 0; i < kWidth; ++i) any |= which[i];
+    return any != 0;
+  }
+  /// Beyond half a radian it is no longer a parabola; the contact is found anew next step.
+  [[gnu::always_inline]] static double bend(double turn, int) {
+    const double angle = turn < -1.0 ? -1.0 : 1.0 < turn ? 1.0 : turn;
+    const double bend = angle * angle * 0.5;
+    return 0.125 < bend ? 0.125 : bend;
+  }
   /// A double leaves no range.
   [[gnu::always_inline]] static V checked(V v) { return v; }
   [[gnu::always_inline]] static V checkedChange(V v) { return v; }
   [[gnu::always_inline]] static V checkedTotal(V v) { return v; }
+  [[gnu::always_inline]] static V checkedWay(V v) { return v; }
   static std::uint64_t left() { return 0; }
 
   /// All ones in the lanes whose bit is set.

@@ -3,6 +3,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <limits>
 
 #include "contact_block.h"
 
@@ -94,10 +95,42 @@ class WideLanes {
     return dot2(soft.massScale, full, soft.impulseScale, before);
   }
   static void note(const char*, V) {}
+
+  /// In [0, 1], in units of 2^-32: 0 or 1, and a part of 32 bits with a sign.
+  struct Factor {
+    V whole, part;
+  };
+  [[gnu::always_inline]] static Factor factor(std::int64_t x) {
+    return {all(-((x + (std::int64_t{1} << 31)) >> 32)), all(x)};
+  }
+  /// x * factor + to, rounded once as mulAdd of Fixed is, to nearest, ties to even.
+  [[gnu::always_inline]] static V addProduct(V x, const Factor& factor, V to) {
+    constexpr std::int64_t kHalf = std::int64_t{1} << 31;
+    const Products product = times(factor.part, x);
+    // Shifted with its sign: shifts of unsigned numbers are what every processor has.
+    const V high = Vectors::template down<32>(product.low + std::numeric_limits<std::int64_t>::min()) - kHalf;
+    const V floor = to + (x & factor.whole) + product.high + high;
+    const V rest = (product.low & 0xffffffff) + (kHalf - 1) + (floor & 1);
+    return floor + Vectors::template down<32>(rest);
+  }
+  [[gnu::always_inline]] static bool differ(V a, V b) { return Vectors::any(a ^ b); }
+  /// @param bits  of a turning by the radius, over one in radians
+  [[gnu::always_inline]] static std::int64_t bend(std::int64_t turn, int bits) {
+    const std::uint64_t half = (std::uint64_t{1} << bits) >> 1;
+    const std::uint64_t size = static_cast<std::uint64_t>(turn < 0 ? -turn : turn);
+    // Beyond half a radian it is no longer a parabola; the contact is found anew next step.
+    constexpr std::uint64_t kMost = std::uint64_t{1} << 31;
+    const std::uint64_t angle = (size + half) >> bits < kMost ? (size + half) >> bits : kMost;
+    const std::uint64_t square = angle * angle;
+    const std::uint64_t rounded = (square + (kMost - 1) + (square >> 32 & 1)) >> 32;
+    return static_cast<std::int64_t>((rounded + (rounded >> 1 & 1)) >> 1 << bits);
+  }
+
   /// Its ranges are kept by contract, see docs/ranges.md.
   [[gnu::always_inline]] static V checked(V v) { return v; }
   [[gnu::always_inline]] static V checkedChange(V v) { return v; }
   [[gnu::always_inline]] static V checkedTotal(V v) { return v; }
+  [[gnu::always_inline]] static V checkedWay(V v) { return v; }
   static std::uint64_t left() { return 0; }
 
   [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
@@ -231,6 +264,21 @@ class FastLanes {
   }
   static void note(const char*, V) {}
 
+  [[gnu::always_inline]] static C factor(std::int32_t x) { return C(all(x)); }
+  [[gnu::always_inline]] static V addProduct(V x, const C& factor, V to) { return product(factor, x) + to; }
+  [[gnu::always_inline]] static bool differ(V a, V b) { return Vectors::any(a ^ b); }
+  /// @param bits  of the square of a turning, over twice a bend; from 1 to 63
+  [[gnu::always_inline]] static std::int32_t bend(std::int32_t turn, int bits) {
+    const std::uint64_t one = std::uint64_t{1} << bits;
+    const std::uint64_t square = static_cast<std::uint64_t>(std::int64_t{turn} * turn);
+    const std::uint64_t bend = (square + (one >> 1)) >> bits;
+    // Beyond half a radian it is no longer a parabola; the contact is found anew next step.
+    const std::uint64_t eighth = (one + 8) >> 4;
+    constexpr std::uint64_t kMost = Numbers::kRange / 2 - 1;
+    const std::uint64_t most = eighth < kMost ? eighth : kMost;
+    return static_cast<std::int32_t>(bend < most ? bend : most);
+  }
+
   /// Notes where a speed or an impulse leaves the range.
   [[gnu::always_inline]] V checked(V v) {
     left_ = left_ | (v + Numbers::kRange);
@@ -242,6 +290,10 @@ class FastLanes {
   }
   [[gnu::always_inline]] V checkedTotal(V v) {
     left_ = left_ | ((v >> 2) + Numbers::kRange);
+    return v;
+  }
+  [[gnu::always_inline]] V checkedWay(V v) {
+    left_ = left_ | ((v << 1) + Numbers::kRange);
     return v;
   }
   std::uint64_t left() const {
@@ -475,6 +527,7 @@ struct OneAtATime {
   static V greater(V a, V b) { return b > a ? b : a; }
   static V less(V a, V b) { return a > b ? b : a; }
   static V mask(int bits) { return {-(bits & 1)}; }
+  static bool any(V v) { return v.value != 0; }
   static std::uint64_t at(V v, int) { return static_cast<std::uint32_t>(v.value); }
   static Products times(Coefficients a, V b) { return {std::int64_t{a.value} * b.value}; }
   template <int kBits>

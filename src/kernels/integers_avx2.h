@@ -36,6 +36,9 @@ struct WideAvx2 : UnsignedShifts<Avx2Vectors> {
   [[gnu::always_inline]] static V multiply(V a, V b) {
     return reinterpret_cast<V>(Avx2Vectors::multiply(reinterpret_cast<U>(a), reinterpret_cast<U>(b)));
   }
+  [[gnu::always_inline]] static bool any(V v) {
+    return _mm256_testz_si256(reinterpret_cast<__m256i>(v), reinterpret_cast<__m256i>(v)) == 0;
+  }
   [[gnu::always_inline]] static V mask(int bits) {
     const U all = U{} + static_cast<std::uint64_t>(bits);
     return -reinterpret_cast<V>((all >> U{0, 1, 2, 3}) & 1);
@@ -83,6 +86,7 @@ struct FastAvx2 : EvenAndOdd<Avx2Vectors> {
 
   [[gnu::always_inline]] static V greater(V a, V b) { return vector(_mm256_max_epi32(bits(a), bits(b))); }
   [[gnu::always_inline]] static V less(V a, V b) { return vector(_mm256_min_epi32(bits(a), bits(b))); }
+  [[gnu::always_inline]] static bool any(V v) { return _mm256_testz_si256(bits(v), bits(v)) == 0; }
   [[gnu::always_inline]] static V mask(int bits) {
     return ((V{} + bits) << V{31, 30, 29, 28, 27, 26, 25, 24}) >> 31;
   }

@@ -30,6 +30,7 @@ struct WideNeon {
   [[gnu::always_inline]] static V down(V x) {
     return reinterpret_cast<V>(reinterpret_cast<U>(x) >> kBits);
   }
+  [[gnu::always_inline]] static bool any(V v) { return vmaxvq_u32(reinterpret_cast<uint32x4_t>(v)) != 0; }
   [[gnu::always_inline]] static V mask(int bits) { return V{-(bits & 1), -(bits >> 1 & 1)}; }
   [[gnu::always_inline]] static void gather(const Body* bodies, std::int64_t (Body::*part)[4],
                                             const std::uint32_t* at, V& x, V& y, V& z, V& w) {
@@ -82,6 +83,7 @@ struct FastNeon {
 
   [[gnu::always_inline]] static V greater(V a, V b) { return vector(vmaxq_s32(bits(a), bits(b))); }
   [[gnu::always_inline]] static V less(V a, V b) { return vector(vminq_s32(bits(a), bits(b))); }
+  [[gnu::always_inline]] static bool any(V v) { return vmaxvq_u32(reinterpret_cast<uint32x4_t>(v)) != 0; }
   [[gnu::always_inline]] static V mask(int bits) {
     return V{-(bits & 1), -(bits >> 1 & 1), -(bits >> 2 & 1), -(bits >> 3 & 1)};
   }

@@ -27,6 +27,7 @@ struct WideSimd128 {
   [[gnu::always_inline]] static V down(V x) {
     return reinterpret_cast<V>(reinterpret_cast<U>(x) >> kBits);
   }
+  [[gnu::always_inline]] static bool any(V v) { return wasm_v128_any_true(reinterpret_cast<v128_t>(v)); }
   [[gnu::always_inline]] static V mask(int bits) { return V{-(bits & 1), -(bits >> 1 & 1)}; }
   [[gnu::always_inline]] static void gather(const Body* bodies, std::int64_t (Body::*part)[4],
                                             const std::uint32_t* at, V& x, V& y, V& z, V& w) {
@@ -85,6 +86,7 @@ struct FastSimd128 {
 
   [[gnu::always_inline]] static V greater(V a, V b) { return vector(wasm_i32x4_max(bits(a), bits(b))); }
   [[gnu::always_inline]] static V less(V a, V b) { return vector(wasm_i32x4_min(bits(a), bits(b))); }
+  [[gnu::always_inline]] static bool any(V v) { return wasm_v128_any_true(bits(v)); }
   [[gnu::always_inline]] static V mask(int bits) {
     return V{-(bits & 1), -(bits >> 1 & 1), -(bits >> 2 & 1), -(bits >> 3 & 1)};
   }

@@ -36,6 +36,9 @@ struct WideSse42 : UnsignedShifts<Sse42Vectors> {
   [[gnu::always_inline]] static V multiply(V a, V b) {
     return reinterpret_cast<V>(Sse42Vectors::multiply(reinterpret_cast<U>(a), reinterpret_cast<U>(b)));
   }
+  [[gnu::always_inline]] static bool any(V v) {
+    return _mm_testz_si128(reinterpret_cast<__m128i>(v), reinterpret_cast<__m128i>(v)) == 0;
+  }
   [[gnu::always_inline]] static V mask(int bits) { return V{-(bits & 1), -(bits >> 1 & 1)}; }
   [[gnu::always_inline]] static void gather(const Body* bodies, std::int64_t (Body::*part)[4],
                                             const std::uint32_t* at, V& x, V& y, V& z, V& w) {
@@ -65,6 +68,9 @@ struct FastSse42 : EvenAndOdd<Sse42Vectors> {
 
   [[gnu::always_inline]] static V greater(V a, V b) { return vector(_mm_max_epi32(bits(a), bits(b))); }
   [[gnu::always_inline]] static V less(V a, V b) { return vector(_mm_min_epi32(bits(a), bits(b))); }
+  [[gnu::always_inline]] static bool any(V v) {
+    return _mm_testz_si128(reinterpret_cast<__m128i>(v), reinterpret_cast<__m128i>(v)) == 0;
+  }
   [[gnu::always_inline]] static V mask(int bits) {
     return V{-(bits & 1), -(bits >> 1 & 1), -(bits >> 2 & 1), -(bits >> 3 & 1)};
   }

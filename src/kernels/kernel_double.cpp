@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "require_ieee.h"
 
-#include "contact_passes.h"
 #include "double_lanes2.h"
 #include "kernels.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<PlainNumbers<double, false>> doubleBy2 = kPassesOf<DoubleLanes2>;
+const SoftPasses<PlainNumbers<double, false>> doubleBy2 = kPassesOf<DoubleLanes2>;
 
 }  // namespace samestep::kernels

@@ -6,18 +6,18 @@
 #include "kernels.h"
 
 #ifdef __AVX2__
-#include "contact_passes.h"
 #include "double_lanes4.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2 = &kPassesOf<DoubleLanes4>;
+const SoftPasses<PlainNumbers<double, false>>* const doubleAvx2 = &kPassesOf<DoubleLanes4>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2 = nullptr;
+const SoftPasses<PlainNumbers<double, false>>* const doubleAvx2 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "contact_passes.h"
 #include "integer_lanes.h"
 #include "kernels.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers> fastBy1 =
+const SoftPasses<FastNumbers> fastBy1 =
     kPassesOf<FastLanes<OneAtATime>, CoefficientLanes<OneAtATime, FastNumbers>>;
 
 }  // namespace samestep::kernels

@@ -3,22 +3,23 @@
 #include "kernels.h"
 
 #ifdef __AVX2__
-#include "contact_passes.h"
 #include "integers_avx2.h"
+#include "integers_sse42.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastAvx2 =
-    &kPassesOf<FastLanes<FastAvx2>, CoefficientLanes<FastAvx2, FastNumbers>>;
-const ContactPasses<WideNumbers>* const wideAvx2 =
+const SoftPasses<FastNumbers>* const fastAvx2 =
+    &kPassesOf<FastLanes<FastAvx2>, CoefficientLanes<FastAvx2, FastNumbers>, FastLanes<FastSse42>>;
+const SoftPasses<WideNumbers>* const wideAvx2 =
     &kPassesOf<WideLanes<WideAvx2>, CoefficientLanes<FastAvx2, WideNumbers>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastAvx2 = nullptr;
-const ContactPasses<WideNumbers>* const wideAvx2 = nullptr;
+const SoftPasses<FastNumbers>* const fastAvx2 = nullptr;
+const SoftPasses<WideNumbers>* const wideAvx2 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

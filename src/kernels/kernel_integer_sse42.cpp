@@ -3,22 +3,22 @@
 #include "kernels.h"
 
 #ifdef __SSE4_2__
-#include "contact_passes.h"
 #include "integers_sse42.h"
+#include "soft_passes.h"
 
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastSse42 =
+const SoftPasses<FastNumbers>* const fastSse42 =
     &kPassesOf<FastLanes<FastSse42>, CoefficientLanes<FastSse42, FastNumbers>>;
-const ContactPasses<WideNumbers>* const wideSse42 =
+const SoftPasses<WideNumbers>* const wideSse42 =
     &kPassesOf<WideLanes<WideSse42>, CoefficientLanes<FastSse42, WideNumbers>>;
 
 }  // namespace samestep::kernels
 #else
 namespace samestep::kernels {
 
-const ContactPasses<FastNumbers>* const fastSse42 = nullptr;
-const ContactPasses<WideNumbers>* const wideSse42 = nullptr;
+const SoftPasses<FastNumbers>* const fastSse42 = nullptr;
+const SoftPasses<WideNumbers>* const wideSse42 = nullptr;
 
 }  // namespace samestep::kernels
 #endif

@@ -9,20 +9,20 @@
 namespace samestep::kernels {
 
 /// Two doubles at a time, in vectors that every compiler translates.
-extern const ContactPasses<PlainNumbers<double, false>> doubleBy2;
-extern const ContactPasses<PlainNumbers<double, false>>* const doubleAvx2;
+extern const SoftPasses<PlainNumbers<double, false>> doubleBy2;
+extern const SoftPasses<PlainNumbers<double, false>>* const doubleAvx2;
 
 /// One integer at a time; what the wide ones do that way depends on the scalar, see scalar_lanes.h.
-extern const ContactPasses<FastNumbers> fastBy1;
-extern const ContactPasses<FastNumbers>* const fastSse42;
-extern const ContactPasses<FastNumbers>* const fastAvx2;
-extern const ContactPasses<WideNumbers>* const wideSse42;
-extern const ContactPasses<WideNumbers>* const wideAvx2;
+extern const SoftPasses<FastNumbers> fastBy1;
+extern const SoftPasses<FastNumbers>* const fastSse42;
+extern const SoftPasses<FastNumbers>* const fastAvx2;
+extern const SoftPasses<WideNumbers>* const wideSse42;
+extern const SoftPasses<WideNumbers>* const wideAvx2;
 /// Every processor of 64-bit ARM can run these.
-extern const ContactPasses<FastNumbers>* const fastNeon;
-extern const ContactPasses<WideNumbers>* const wideNeon;
+extern const SoftPasses<FastNumbers>* const fastNeon;
+extern const SoftPasses<WideNumbers>* const wideNeon;
 /// A WebAssembly build has these or has them not; an engine without them refuses the whole module.
-extern const ContactPasses<FastNumbers>* const fastSimd128;
-extern const ContactPasses<WideNumbers>* const wideSimd128;
+extern const SoftPasses<FastNumbers>* const fastSimd128;
+extern const SoftPasses<WideNumbers>* const wideSimd128;
 
 }  // namespace samestep::kernels

@@ -5,6 +5,7 @@
 #include <samestep/scalar.h>
 
 #include "contact_block.h"
+#include "soft_units.h"
 
 namespace samestep {
 
@@ -102,10 +103,21 @@ struct ScalarLanes {
   [[gnu::always_inline]] static V soften(const Softness<V>& soft, const V& full, const V& before) {
     return dot2(soft.massScale, full, soft.impulseScale, before);
   }
+  [[gnu::always_inline]] static V factor(S x) { return all(x); }
+  [[gnu::always_inline]] static V addProduct(const V& x, const V& factor, const V& to) {
+    return {mulAdd(x.a, factor.a, to.a), mulAdd(x.b, factor.b, to.b)};
+  }
+  [[gnu::always_inline]] static bool differ(const V& x, const V& y) { return x.a != y.a || x.b != y.b; }
+  /// Beyond half a radian it is no longer a parabola; the contact is found anew next step.
+  [[gnu::always_inline]] static S bend(S turn, int) {
+    const S angle = clamp(turn, S(-1), S(1));
+    return min(angle * angle * ratio<S>(1, 2), ratio<S>(1, 8));
+  }
   /// Its ranges are kept by contract, see docs/ranges.md.
   [[gnu::always_inline]] static V checked(const V& v) { return v; }
   [[gnu::always_inline]] static V checkedChange(const V& v) { return v; }
   [[gnu::always_inline]] static V checkedTotal(const V& v) { return v; }
+  [[gnu::always_inline]] static V checkedWay(const V& v) { return v; }
   [[gnu::always_inline]] static std::uint64_t left() { return 0; }
   [[gnu::always_inline]] static void note(const char* name, const V& v) {
     highWater<S>(name, v.a);
@@ -199,9 +211,18 @@ struct WideScalarLanes {
   static V soften(const Softness<V>& soft, V full, V before) {
     return dot2(soft.massScale, full, soft.impulseScale, before);
   }
+  static V factor(std::int64_t x) { return all(x); }
+  static V addProduct(V x, V factor, V to) { return factor == S(1) ? x + to : mulAdd(x, factor, to); }
+  static bool differ(V x, V y) { return x != y; }
+  /// As that of ScalarLanes, of a turning by the radius.
+  static std::int64_t bend(std::int64_t turn, int bits) {
+    const S bend = ScalarLanes<S>::bend(all(units::shifted(turn, bits)), 0);
+    return bend.raw() << bits;
+  }
   static V checked(V v) { return v; }
   static V checkedChange(V v) { return v; }
   static V checkedTotal(V v) { return v; }
+  static V checkedWay(V v) { return v; }
   static std::uint64_t left() { return 0; }
   static void note(const char* name, V v) { highWater<S>(name, v); }
   static V unless(std::uint8_t bits, int lane, V v) { return (bits >> lane & 1) != 0 ? zero() : v; }
