@@ -12,7 +12,7 @@ namespace samestep::kernels {
 const SoftPasses<FastNumbers>* const fastAvx2 =
     &kPassesOf<FastLanes<FastAvx2>, CoefficientLanes<FastAvx2, FastNumbers>, FastLanes<FastSse42>>;
 const SoftPasses<WideNumbers>* const wideAvx2 =
-    &kPassesOf<WideLanes<WideAvx2>, CoefficientLanes<FastAvx2, WideNumbers>>;
+    &kPassesOf<WideLanes<TwoWide<WideAvx2>>, CoefficientLanes<FastAvx2, WideNumbers>, WideLanes<WideAvx2>>;
 
 }  // namespace samestep::kernels
 #else
