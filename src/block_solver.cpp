@@ -141,9 +141,9 @@ void BlockSolver<S, N>::clearLane(std::uint32_t at, int lane, Taken& taken) {
   Block& block = blocks_[at];
   Rest& rest = rests_[at];
   BlockInput<N>& in = taken.input;
-  const auto bit = static_cast<std::uint8_t>(1 << lane);
-  block.fixedA = static_cast<std::uint8_t>(block.fixedA | bit);
-  block.fixedB = static_cast<std::uint8_t>(block.fixedB | bit);
+  const auto bit = static_cast<std::uint16_t>(1 << lane);
+  block.fixedA = static_cast<std::uint16_t>(block.fixedA | bit);
+  block.fixedB = static_cast<std::uint16_t>(block.fixedB | bit);
   block.bodyA[lane] = block.bodyB[lane] = 0;
   block.count[lane] = 0;
   block.shareA[lane] = block.friction[lane] = kNone;
@@ -164,9 +164,9 @@ bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair,
   taken.pair[lane] = &pair;
   taken.a[lane] = &a;
   taken.b[lane] = &b;
-  const auto bit = static_cast<std::uint8_t>(1 << lane);
-  const auto mark = [&](std::uint8_t& bits, bool set) {
-    if (set) bits = static_cast<std::uint8_t>(bits | bit);
+  const auto bit = static_cast<std::uint16_t>(1 << lane);
+  const auto mark = [&](std::uint16_t& bits, bool set) {
+    if (set) bits = static_cast<std::uint16_t>(bits | bit);
   };
   block.bodyA[lane] = a.start;
   block.bodyB[lane] = b.start;

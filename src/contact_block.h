@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
 /// The records that the soft step's kernels work on. Plain arrays: a kernel built for one processor must
@@ -11,7 +12,7 @@ namespace samestep {
 template <class S, bool kSpins>
 struct PlainNumbers {
   /// Pairs side by side in a block: as many as the widest kernel takes at once.
-  static constexpr int kLanes = 4;
+  static constexpr int kLanes = std::floating_point<S> ? 8 : 4;
   using Coefficient = S;  ///< Directions, arms, masses.
   using Speed = S;        ///< Of a body.
   using Sum = S;          ///< Impulses and what is found from speeds.
@@ -24,8 +25,6 @@ struct PlainNumbers {
 struct IntegerUnits {
   using Coefficient = std::int32_t;
   static constexpr bool kStoresSpins = true;
-  /// As many as the widest kernel takes at once, and a power of two times what any other does.
-  static constexpr int kLanes = 8;
   /// Fraction bits of directions, of arms by radius, of masses, shares and softness; of rates, speeds by
   /// ways; of spins per impulse.
   static constexpr int kUnitBits = 30, kRateBits = 22, kSpinBits = 26;
@@ -33,6 +32,7 @@ struct IntegerUnits {
 
 /// Speeds, ways and impulses in 64 bits: the accuracy and the range of Q32.32.
 struct WideNumbers : IntegerUnits {
+  static constexpr int kLanes = 8;
   using Speed = std::int64_t;
   using Sum = std::int64_t;
   static constexpr int kFrictionBits = 22;
@@ -41,6 +41,7 @@ struct WideNumbers : IntegerUnits {
 /// All in 32 bits. Speeds and impulses have one unit for the whole step, chosen by the largest of them, and
 /// ways another.
 struct FastNumbers : IntegerUnits {
+  static constexpr int kLanes = 16;
   using Speed = std::int32_t;
   using Sum = std::int32_t;
   static constexpr int kFrictionBits = 28;
@@ -141,7 +142,7 @@ struct alignas(64) ContactBlock {
   std::uint8_t count[N::kLanes], points;
   /// A bit per lane: whether contacts leave A or B as it is; whether its surface is round, so that turning
   /// does not move it; whether the contact is one with a body that nothing moves.
-  std::uint8_t fixedA, fixedB, roundA, roundB, stiff;
+  std::uint16_t fixedA, fixedB, roundA, roundB, stiff;
   /// Whether any point bounces; whether any strikes: approaches fast and holds nothing yet.
   std::uint8_t bounces, strikes;
   /// Of 32 bits: the friction is 2^this times what is written, where that does not hold it.

@@ -85,17 +85,16 @@ struct DoubleLanes {
   static std::uint64_t left() { return 0; }
 
   /// All ones in the lanes whose bit is set.
-  [[gnu::always_inline]] static M mask(std::uint8_t bits, int lane) {
-    return *reinterpret_cast<const M*>(kMasks[bits] + lane);
+  [[gnu::always_inline]] static M mask(int bits, int lane) {
+    return *reinterpret_cast<const M*>(kMasks[bits >> lane & ((1 << kWidth) - 1)]);
   }
-  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, V v) {
+  [[gnu::always_inline]] static V unless(int bits, int lane, V v) {
     return reinterpret_cast<V>(reinterpret_cast<M>(v) & ~mask(bits, lane));
   }
   [[gnu::always_inline]] static V soften(const Softness<V>& soft, V full, V before) {
     return soft.massScale * full + soft.impulseScale * before;
   }
-  [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane,
-                                                     const Softness<double>* of) {
+  [[gnu::always_inline]] static Softness<V> softness(int stiff, int lane, const Softness<double>* of) {
     const M mask = DoubleLanes::mask(stiff, lane);
     return {select(mask, all(of[1].biasRate), all(of[0].biasRate)),
             select(mask, all(of[1].massScale), all(of[0].massScale)),
@@ -104,7 +103,7 @@ struct DoubleLanes {
 
  private:
   static constexpr std::int64_t kIn = -1;
-  alignas(32) static constexpr std::int64_t kMasks[16][Numbers::kLanes] = {
+  alignas(32) static constexpr std::int64_t kMasks[16][4] = {
       {0, 0, 0, 0},     {kIn, 0, 0, 0},     {0, kIn, 0, 0},     {kIn, kIn, 0, 0},
       {0, 0, kIn, 0},   {kIn, 0, kIn, 0},   {0, kIn, kIn, 0},   {kIn, kIn, kIn, 0},
       {0, 0, 0, kIn},   {kIn, 0, 0, kIn},   {0, kIn, 0, kIn},   {kIn, kIn, 0, kIn},

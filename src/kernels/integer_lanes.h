@@ -37,12 +37,8 @@ class WideLanes {
     *reinterpret_cast<typename Vectors::Loose*>(to) = v;
   }
   template <class Mask>
-  [[gnu::always_inline]] static V select(const Mask& mask, const V& a, const V& b) {
-    if constexpr (requires { V::select(mask, a, b); }) {
-      return V::select(mask, a, b);
-    } else {
-      return mask ? a : b;
-    }
+  [[gnu::always_inline]] static V select(Mask mask, V a, V b) {
+    return mask ? a : b;
   }
   [[gnu::always_inline]] static auto above(V a, V b) { return a > b; }
   [[gnu::always_inline]] static V greater(V a, V b) { return select(a < b, b, a); }
@@ -52,8 +48,7 @@ class WideLanes {
   [[gnu::always_inline]] static V pushing(V sum, const SoftConstants<Numbers>& constants) {
     return within(sum, zero(), all(constants.mostSum));
   }
-  [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane,
-                                                     const Softness<std::int32_t>* of) {
+  [[gnu::always_inline]] static Softness<V> softness(int stiff, int lane, const Softness<std::int32_t>* of) {
     const V mask = Vectors::mask(stiff >> lane);
     const auto choose = [&](std::int64_t in, std::int64_t out) __attribute__((always_inline)) {
       return select(mask != zero(), all(in), all(out));
@@ -61,9 +56,7 @@ class WideLanes {
     return {choose(of[1].biasRate, of[0].biasRate), choose(of[1].massScale, of[0].massScale),
             choose(of[1].impulseScale, of[0].impulseScale)};
   }
-  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, V v) {
-    return v & ~Vectors::mask(bits >> lane);
-  }
+  [[gnu::always_inline]] static V unless(int bits, int lane, V v) { return v & ~Vectors::mask(bits >> lane); }
 
   [[gnu::always_inline]] static V dot2(V a, V b, V c, V d) {
     return (times(a, b) + times(c, d)).template over<Numbers::kUnitBits>();
@@ -201,12 +194,8 @@ class FastLanes {
     *reinterpret_cast<typename Vectors::Loose*>(to) = v;
   }
   template <class Mask>
-  [[gnu::always_inline]] static V select(const Mask& mask, const V& a, const V& b) {
-    if constexpr (requires { V::select(mask, a, b); }) {
-      return V::select(mask, a, b);
-    } else {
-      return mask ? a : b;
-    }
+  [[gnu::always_inline]] static V select(Mask mask, V a, V b) {
+    return mask ? a : b;
   }
   [[gnu::always_inline]] static auto above(V a, V b) { return a > b; }
   [[gnu::always_inline]] static V greater(V a, V b) { return Vectors::greater(a, b); }
@@ -217,8 +206,7 @@ class FastLanes {
   [[gnu::always_inline]] static V pushing(V sum, const SoftConstants<Numbers>&) {
     return greater(sum, zero());
   }
-  [[gnu::always_inline]] static Softness<C> softness(std::uint8_t stiff, int lane,
-                                                     const Softness<std::int32_t>* of) {
+  [[gnu::always_inline]] static Softness<C> softness(int stiff, int lane, const Softness<std::int32_t>* of) {
     const V mask = Vectors::mask(stiff >> lane);
     const auto choose = [&](std::int32_t in, std::int32_t out) __attribute__((always_inline)) {
       return C(all(out) ^ (mask & all(in ^ out)));
@@ -226,9 +214,7 @@ class FastLanes {
     return {choose(of[1].biasRate, of[0].biasRate), choose(of[1].massScale, of[0].massScale),
             choose(of[1].impulseScale, of[0].impulseScale)};
   }
-  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, V v) {
-    return v & ~Vectors::mask(bits >> lane);
-  }
+  [[gnu::always_inline]] static V unless(int bits, int lane, V v) { return v & ~Vectors::mask(bits >> lane); }
 
   [[gnu::always_inline]] static V dot2(const C& a, V b, const C& c, V d) {
     return over<Numbers::kUnitBits>(times(a, b) + times(c, d));
@@ -418,97 +404,6 @@ class CoefficientLanes {
   }
 
   V left_{};
-};
-
-/// Two vectors as one: while one waits for a product the processor works on the other.
-template <class Vectors>
-struct TwoVectors {
-  using One = typename Vectors::Loose;
-  struct Masks {
-    decltype(One() > One()) a, b;
-  };
-  One a, b;
-
-  [[gnu::always_inline]] friend TwoVectors operator+(const TwoVectors& x, const TwoVectors& y) {
-    return {x.a + y.a, x.b + y.b};
-  }
-  [[gnu::always_inline]] friend TwoVectors operator-(const TwoVectors& x, const TwoVectors& y) {
-    return {x.a - y.a, x.b - y.b};
-  }
-  [[gnu::always_inline]] friend TwoVectors operator-(const TwoVectors& x) { return {-x.a, -x.b}; }
-  [[gnu::always_inline]] friend TwoVectors operator~(const TwoVectors& x) { return {~x.a, ~x.b}; }
-  [[gnu::always_inline]] friend TwoVectors operator&(const TwoVectors& x, const TwoVectors& y) {
-    return {x.a & y.a, x.b & y.b};
-  }
-  [[gnu::always_inline]] friend TwoVectors operator|(const TwoVectors& x, const TwoVectors& y) {
-    return {x.a | y.a, x.b | y.b};
-  }
-  [[gnu::always_inline]] friend TwoVectors operator^(const TwoVectors& x, const TwoVectors& y) {
-    return {x.a ^ y.a, x.b ^ y.b};
-  }
-  template <class Number>
-  [[gnu::always_inline]] friend TwoVectors operator+(const TwoVectors& x, Number y)
-    requires std::integral<Number>
-  {
-    return {x.a + y, x.b + y};
-  }
-  [[gnu::always_inline]] friend TwoVectors operator<<(const TwoVectors& x, int bits) {
-    return {x.a << bits, x.b << bits};
-  }
-  [[gnu::always_inline]] friend TwoVectors operator>>(const TwoVectors& x, int bits) {
-    return {x.a >> bits, x.b >> bits};
-  }
-  [[gnu::always_inline]] friend Masks operator>(const TwoVectors& x, const TwoVectors& y) {
-    return {x.a > y.a, x.b > y.b};
-  }
-  [[gnu::always_inline]] friend Masks operator<(const TwoVectors& x, const TwoVectors& y) { return y > x; }
-  [[gnu::always_inline]] friend Masks operator!=(const TwoVectors& x, const TwoVectors& y) {
-    return {x.a != y.a, x.b != y.b};
-  }
-  [[gnu::always_inline]] static TwoVectors select(const Masks& masks, const TwoVectors& x,
-                                                  const TwoVectors& y) {
-    return {masks.a ? x.a : y.a, masks.b ? x.b : y.b};
-  }
-};
-
-/// The 64-bit vectors of WideLanes, two at once.
-template <class Vectors>
-struct TwoWide {
-  using V = TwoVectors<Vectors>;
-  using Loose = V;
-  using Body = typename Vectors::Body;
-  static constexpr int kOne = sizeof(typename V::One) / sizeof(std::int64_t);
-
-  [[gnu::always_inline]] static V widen(const std::int32_t* from) {
-    return {Vectors::widen(from), Vectors::widen(from + kOne)};
-  }
-  [[gnu::always_inline]] static V multiply(const V& x, const V& y) {
-    return {Vectors::multiply(x.a, y.a), Vectors::multiply(x.b, y.b)};
-  }
-  template <int kBits>
-  [[gnu::always_inline]] static V rounded(const V& x) {
-    return {Vectors::template rounded<kBits>(x.a), Vectors::template rounded<kBits>(x.b)};
-  }
-  template <int kBits>
-  [[gnu::always_inline]] static V down(const V& x) {
-    return {Vectors::template down<kBits>(x.a), Vectors::template down<kBits>(x.b)};
-  }
-  [[gnu::always_inline]] static V mask(int bits) { return {Vectors::mask(bits), Vectors::mask(bits >> kOne)}; }
-  [[gnu::always_inline]] static void gather(const Body* bodies, std::int64_t (Body::*part)[4],
-                                            const std::uint32_t* at, V& x, V& y, V& z, V& w) {
-    typename Vectors::V out[8];
-    Vectors::gather(bodies, part, at, out[0], out[1], out[2], out[3]);
-    Vectors::gather(bodies, part, at + kOne, out[4], out[5], out[6], out[7]);
-    x = {out[0], out[4]};
-    y = {out[1], out[5]};
-    z = {out[2], out[6]};
-    w = {out[3], out[7]};
-  }
-  [[gnu::always_inline]] static void scatter(Body* bodies, const std::uint32_t* at, int fixed, const V& x,
-                                             const V& y, const V& turn) {
-    Vectors::scatter(bodies, at, fixed, x.a, y.a, turn.a);
-    Vectors::scatter(bodies, at + kOne, fixed >> kOne, x.b, y.b, turn.b);
-  }
 };
 
 /// What vectors of 64-bit integers have in common whose processor shifts unsigned ones only. `Types` names

@@ -8,10 +8,12 @@
 #ifdef __AVX2__
 #include "double_lanes4.h"
 #include "soft_passes.h"
+#include "two_lanes.h"
 
 namespace samestep::kernels {
 
-const SoftPasses<PlainNumbers<double, false>>* const doubleAvx2 = &kPassesOf<DoubleLanes4>;
+const SoftPasses<PlainNumbers<double, false>>* const doubleAvx2 =
+    &kPassesOf<TwoLanes<DoubleLanes4>, DoubleLanes4, DoubleLanes4>;
 
 }  // namespace samestep::kernels
 #else

@@ -6,13 +6,14 @@
 #include "integers_avx2.h"
 #include "integers_sse42.h"
 #include "soft_passes.h"
+#include "two_lanes.h"
 
 namespace samestep::kernels {
 
 const SoftPasses<FastNumbers>* const fastAvx2 =
-    &kPassesOf<FastLanes<FastAvx2>, CoefficientLanes<FastAvx2, FastNumbers>, FastLanes<FastSse42>>;
+    &kPassesOf<TwoLanes<FastLanes<FastAvx2>>, CoefficientLanes<FastAvx2, FastNumbers>, FastLanes<FastSse42>>;
 const SoftPasses<WideNumbers>* const wideAvx2 =
-    &kPassesOf<WideLanes<TwoWide<WideAvx2>>, CoefficientLanes<FastAvx2, WideNumbers>, WideLanes<WideAvx2>>;
+    &kPassesOf<TwoLanes<WideLanes<WideAvx2>>, CoefficientLanes<FastAvx2, WideNumbers>, WideLanes<WideAvx2>>;
 
 }  // namespace samestep::kernels
 #else

@@ -124,10 +124,10 @@ struct ScalarLanes {
     highWater<S>(name, v.b);
   }
 
-  [[gnu::always_inline]] static V unless(std::uint8_t bits, int lane, const V& v) {
+  [[gnu::always_inline]] static V unless(int bits, int lane, const V& v) {
     return select({(bits >> lane & 1) != 0, (bits >> lane & 2) != 0}, zero(), v);
   }
-  [[gnu::always_inline]] static Softness<V> softness(std::uint8_t stiff, int lane, const Softness<S>* of) {
+  [[gnu::always_inline]] static Softness<V> softness(int stiff, int lane, const Softness<S>* of) {
     const Softness<S>& a = of[stiff >> lane & 1];
     const Softness<S>& b = of[stiff >> lane >> 1 & 1];
     return {{a.biasRate, b.biasRate}, {a.massScale, b.massScale}, {a.impulseScale, b.impulseScale}};
@@ -225,8 +225,8 @@ struct WideScalarLanes {
   static V checkedWay(V v) { return v; }
   static std::uint64_t left() { return 0; }
   static void note(const char* name, V v) { highWater<S>(name, v); }
-  static V unless(std::uint8_t bits, int lane, V v) { return (bits >> lane & 1) != 0 ? zero() : v; }
-  static Softness<V> softness(std::uint8_t stiff, int lane, const Softness<std::int32_t>* of) {
+  static V unless(int bits, int lane, V v) { return (bits >> lane & 1) != 0 ? zero() : v; }
+  static Softness<V> softness(int stiff, int lane, const Softness<std::int32_t>* of) {
     const Softness<std::int32_t>& chosen = of[stiff >> lane & 1];
     return {all(chosen.biasRate), all(chosen.massScale), all(chosen.impulseScale)};
   }
