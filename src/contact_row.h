@@ -26,10 +26,6 @@ struct PairResponse {
 template <Scalar S>
 PairResponse<S> respond(const Body<S>& a, const Body<S>& b);
 
-/// Inverse moment times mass, held in range, 1/m^2; 0 of a body that nothing turns.
-template <Scalar S>
-S momentPerMass(const Body<S>& body);
-
 /// Inverse effective mass along an axis with the given arms (r x axis), relative to the lighter body; >= 1.
 /// @throws UnsolvableCollision (an internal error) if neither body can be moved
 /// MIS: k_scalar

@@ -176,7 +176,7 @@ void Space<S>::softTakeBodies(S dt) {
       impl.solverIndex[i] = Impl::kFree | static_cast<std::uint32_t>(soft.free.size());
       soft.addFree(start);
     } else {
-      start.momentPerMass = momentPerMass(body);
+      start.momentPerMass = body.momentPerMass();
       if constexpr (FixedNumber<S>) start.radiusBits = radiusBits(impl, i, body);
       impl.solverIndex[i] = soft.add(start);
     }
