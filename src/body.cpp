@@ -95,6 +95,7 @@ void Body<S>::derive() {
   const bool moves = isDynamic() && mass_ > S(0);
   inverseMass_ = moves ? reciprocal(toScaled(mass_)) : zero;
   inverseMoment_ = moves && rotates() && moment_ > zero ? reciprocal(moment_) : zero;
+  momentPerMass_ = toScalarWithin(inverseMoment_ * toScaled(mass_), kMaxRelativeMoment<S>);
 }
 
 template <Scalar S>

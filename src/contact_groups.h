@@ -26,7 +26,7 @@ class ContactGroups {
   }
   /// The next pair; a body that nothing moves may be in every group.
   /// @param late  to come after those of its group that are not
-  void add(std::uint32_t a, bool aMoves, std::uint32_t b, bool bMoves, bool late) {
+  [[gnu::always_inline]] void add(std::uint32_t a, bool aMoves, std::uint32_t b, bool bMoves, bool late) {
     const std::uint64_t taken = (aMoves ? used_[a] : 0) | (bMoves ? used_[b] : 0);
     const std::uint32_t free = freeGroup(taken);
     const std::uint32_t group = free < kGroups ? free : kGroups - 1;

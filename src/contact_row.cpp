@@ -14,10 +14,6 @@ namespace {
 template <Scalar S>
 inline constexpr S kMaxFrictionRatio = S(1 << 10);
 
-/// The largest relative inverse moment, 1/m^2: a disc of 2^-5 m has 2^11.
-template <Scalar S>
-inline constexpr S kMaxRelativeMoment = S(1 << 18);
-
 template <Scalar S>
 S relativeMoment(const Body<S>& body, const Scaled<S>& lighterMass) {
   if (body.inverseMoment() == Scaled<S>{}) return S(0);
@@ -39,11 +35,6 @@ S sumOf(S speed, S k, S inverseK) {
 }
 
 }  // namespace
-
-template <Scalar S>
-S momentPerMass(const Body<S>& body) {
-  return relativeMoment(body, toScaled(body.mass()));
-}
 
 template <Scalar S>
 PairResponse<S> respond(const Body<S>& a, const Body<S>& b) {
@@ -115,20 +106,17 @@ void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairRespo
 #ifndef SAMESTEP_FIXED_ONLY
 template struct PairResponse<double>;
 template PairResponse<double> respond(const Body<double>&, const Body<double>&);
-template double momentPerMass(const Body<double>&);
 template double effectiveInverseMass(const PairResponse<double>&, double, double);
 template void prepareAxes(const Pair<double>&, const Contact<double>&, const PairResponse<double>&,
                           const Body<double>&, const Body<double>&, ContactAxes<double>&);
 #endif
 template struct PairResponse<Fixed>;
 template PairResponse<Fixed> respond(const Body<Fixed>&, const Body<Fixed>&);
-template Fixed momentPerMass(const Body<Fixed>&);
 template Fixed effectiveInverseMass(const PairResponse<Fixed>&, Fixed, Fixed);
 template void prepareAxes(const Pair<Fixed>&, const Contact<Fixed>&, const PairResponse<Fixed>&,
                           const Body<Fixed>&, const Body<Fixed>&, ContactAxes<Fixed>&);
 template struct PairResponse<CheckedFixed>;
 template PairResponse<CheckedFixed> respond(const Body<CheckedFixed>&, const Body<CheckedFixed>&);
-template CheckedFixed momentPerMass(const Body<CheckedFixed>&);
 template CheckedFixed effectiveInverseMass(const PairResponse<CheckedFixed>&, CheckedFixed, CheckedFixed);
 template void prepareAxes(const Pair<CheckedFixed>&, const Contact<CheckedFixed>&,
                           const PairResponse<CheckedFixed>&, const Body<CheckedFixed>&,

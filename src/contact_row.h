@@ -36,10 +36,6 @@ template <Scalar S>
   return reach <= S(8) ? moment : min(moment, S(1 << 24) / reach / reach);
 }
 
-/// Inverse moment times mass, held in range, 1/m^2; 0 of a body that nothing turns.
-template <Scalar S>
-S momentPerMass(const Body<S>& body);
-
 /// Inverse effective mass along an axis with the given arms (r x axis), relative to the lighter body; >= 1.
 /// @throws UnsolvableCollision (an internal error) if neither body can be moved
 /// MIS: k_scalar

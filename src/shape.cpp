@@ -195,11 +195,11 @@ bool halves([[maybe_unused]] const Plane<S>* local, [[maybe_unused]] std::size_t
 /// movePlanes for such planes.
 template <Scalar S>
 BB<S> moveHalves(const Transform<S>& pose, const Plane<S>* local, Plane<S>* world, int count) {
-  const Vector<S> origin(pose.tx, pose.ty);
+  const Vector<S> turn(pose.a, pose.b), origin(pose.tx, pose.ty);
   const int half = count / 2;
   Vector<S> reach;
   for (int i = 0; i < half; ++i) {
-    const Vector<S> v = transformVect(pose, local[i].v0), n = transformVect(pose, local[i].n);
+    const Vector<S> v = rotate(local[i].v0, turn), n = rotate(local[i].n, turn);
     world[i] = {origin + v, n};
     world[half + i] = {origin - v, -n};
     reach = {max(reach.x, abs(v.x)), max(reach.y, abs(v.y))};
@@ -210,13 +210,19 @@ BB<S> moveHalves(const Transform<S>& pose, const Plane<S>* local, Plane<S>* worl
 /// Moves vertices and normals, and returns the box around the vertices.
 template <Scalar S>
 BB<S> movePlanes(const Transform<S>& pose, const Plane<S>* local, Plane<S>* world, int count) {
-  BB<S> box;
-  for (int i = 0; i < count; ++i) {
-    const Vector<S> v = transformPoint(pose, local[i].v0);
-    world[i] = {v, transformVect(pose, local[i].n)};
-    box = i == 0 ? BB<S>(v.x, v.y, v.x, v.y) : expand(box, v);
+  const Vector<S> turn(pose.a, pose.b), origin(pose.tx, pose.ty);
+  const Vector<S> first = rotate(local[0].v0, turn) + origin;
+  Vector<S> low = first, high = first;
+  world[0].v0 = first;
+  // One after the other: both at once need more registers than there are.
+  for (int i = 1; i < count; ++i) {
+    const Vector<S> v = rotate(local[i].v0, turn) + origin;
+    world[i].v0 = v;
+    low = {min(low.x, v.x), min(low.y, v.y)};
+    high = {max(high.x, v.x), max(high.y, v.y)};
   }
-  return box;
+  for (int i = 0; i < count; ++i) world[i].n = rotate(local[i].n, turn);
+  return {low.x, low.y, high.x, high.y};
 }
 
 }  // namespace

@@ -25,12 +25,6 @@ void SoftStep<S>::clear() {
 }
 
 template <Scalar S>
-std::uint32_t SoftStep<S>::add(const SoftStart<S>& start) {
-  starts.push_back(start);
-  return static_cast<std::uint32_t>(starts.size() - 1);
-}
-
-template <Scalar S>
 void SoftStep<S>::addFree(const SoftStart<S>& start) {
   constexpr S kLimits[3] = {kMaxSpeed<S>, kMaxSpeed<S>, kMaxAngularSpeed<S>};
   SoftMotion<S>& motion = free.emplace_back();

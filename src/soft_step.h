@@ -87,7 +87,10 @@ struct SoftStep {
   /// Forgets the last step.
   void clear();
   /// Adds a body that touches something, and says as which.
-  std::uint32_t add(const SoftStart<S>& start);
+  std::uint32_t add(const SoftStart<S>& start) {
+    starts.push_back(start);
+    return static_cast<std::uint32_t>(starts.size() - 1);
+  }
   /// Makes all substeps of a body that touches nothing.
   void addFree(const SoftStart<S>& start);
 };

@@ -62,6 +62,7 @@ void SpaceCache<S>::copyFrom(const SpaceCache& other) {
   nextShape = other.nextShape;
   placed = other.placed;
   traits = other.traits;
+  around = other.around;
   surfaces = other.surfaces;
   surfacesKnown = other.surfacesKnown;
   leftMidway = other.leftMidway;
@@ -92,7 +93,7 @@ std::uint64_t SpaceCache<S>::bytes() const {
     return (std::uint64_t{0} + ... + (list.size() * sizeof(list[0])));
   };
   if (!cached) return 0;
-  return of(poses, firstShape, lastShape, nextShape, placed, traits, planeOffset, planes, touched, isTouched,
+  return of(poses, firstShape, lastShape, nextShape, placed, traits, around, planeOffset, planes, touched, isTouched,
             planeRoom, geometry) +
          localPlanes.bytes() + surfaces.bytes() + staticTree.bytes() + dynamicTree.bytes();
 }
@@ -154,6 +155,7 @@ void Space<S>::Impl::growShapes(std::uint32_t slots) {
   nextShape.resize(slots, kNone);
   placed.resize(slots);
   traits.resize(slots);
+  around.resize(slots);
   planeOffset.resize(slots, 0);
   planeRoom.resize(slots, 0);
   geometry.resize(slots, kNone);
@@ -218,6 +220,7 @@ void Space<S>::Impl::prepareShape(std::uint32_t index, const Shape<S>& shape) {
 template <Scalar S>
 void Space<S>::Impl::takeTraits(std::uint32_t index, const Shape<S>& shape) {
   traits[index] = ShapeTraits<S>::of(shape, surfaces.number(Surface<S>::of(shape)));
+  around[index] = CircleAround<S>::of(shape);
   if (!surfaces.tooMany(traits.size())) return;
   // What shapes no longer have is forgotten.
   Surfaces<S> anew;
@@ -261,6 +264,7 @@ void Space<S>::ensureCache() const {
   impl.nextShape.assign(state_.shapes.slots(), Impl::kNone);
   impl.placed.assign(state_.shapes.slots(), {});
   impl.traits.assign(state_.shapes.slots(), {});
+  impl.around.assign(state_.shapes.slots(), {});
   impl.surfaces.clear();
   impl.surfacesKnown = false;
   impl.planeOffset.assign(state_.shapes.slots(), 0);

@@ -56,14 +56,11 @@ class Surfaces {
 
 /// What pairs ask about a shape, close together.
 template <Scalar S>
-struct ShapeTraits {
+struct alignas(32) ShapeTraits {
   std::uint32_t surface = 0;  ///< Its number.
   std::uint32_t body = 0;
   ShapeFilter filter{};
   std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
-  /// Of the circle around the shape whose centre is the shape's centroid, in the body's coordinates.
-  Vector<S> center{};
-  S radius{};
   bool sensor = false;
   bool round = false;    ///< A circle.
   bool rounded = false;  ///< Has a radius: its surface may roll.
@@ -73,11 +70,20 @@ struct ShapeTraits {
             shape.body().index,
             shape.filter(),
             static_cast<std::int32_t>(shape.extent()) + 1,
-            shape.massInfo().centroid,
-            radiusAround(shape.massInfo().centroid, shape),
             shape.sensor(),
             shape.type() == ShapeType::circle,
             shape.radius() != S(0)};
+  }
+};
+
+/// The circle around a shape whose centre is the shape's centroid, in the body's coordinates.
+template <Scalar S>
+struct CircleAround {
+  Vector<S> center{};
+  S radius{};
+
+  static CircleAround of(const Shape<S>& shape) {
+    return {shape.massInfo().centroid, radiusAround(shape.massInfo().centroid, shape)};
   }
 
  private:
@@ -143,6 +149,7 @@ struct SpaceCache {
   std::vector<std::uint32_t> nextShape;
   std::vector<PlacedShape<S>> placed;
   std::vector<ShapeTraits<S>> traits;
+  std::vector<CircleAround<S>> around;
   Surfaces<S> surfaces;
   // Whether the surfaces in all pairs that touched in the last step are those of the shapes.
   bool surfacesKnown = false;
@@ -167,9 +174,9 @@ template <Scalar S>
 struct Space<S>::Impl : SpaceCache<S> {
   using SpaceCache<S>::poses, SpaceCache<S>::firstShape, SpaceCache<S>::lastShape, SpaceCache<S>::nextShape,
       SpaceCache<S>::placed, SpaceCache<S>::planeOffset, SpaceCache<S>::planes, SpaceCache<S>::touched,
-      SpaceCache<S>::isTouched, SpaceCache<S>::planeRoom, SpaceCache<S>::traits, SpaceCache<S>::staticTree,
-      SpaceCache<S>::dynamicTree, SpaceCache<S>::localPlanes, SpaceCache<S>::geometry,
-      SpaceCache<S>::surfaces;
+      SpaceCache<S>::isTouched, SpaceCache<S>::planeRoom, SpaceCache<S>::traits, SpaceCache<S>::around,
+      SpaceCache<S>::staticTree, SpaceCache<S>::dynamicTree, SpaceCache<S>::localPlanes,
+      SpaceCache<S>::geometry, SpaceCache<S>::surfaces;
 
   // Wiring: who is told. By rising number.
   template <class Function>

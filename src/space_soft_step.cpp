@@ -14,7 +14,7 @@ template <Scalar S, class Impl>
 int radiusBits(const Impl& impl, std::uint32_t index, const Body<S>& body) {
   S most = S(0);
   for (std::uint32_t i = impl.firstShape[index]; i != Impl::kNone; i = impl.nextShape[i]) {
-    const ShapeTraits<S>& shape = impl.traits[i];
+    const CircleAround<S>& shape = impl.around[i];
     const Vector<S> aside = shape.center - body.centerOfMass();
     most = max(most, shape.radius + (abs(aside.x) + abs(aside.y)));
   }
@@ -127,8 +127,9 @@ void Space<S>::softFindGroups() {
       impl.soft.mostKept =
           max(impl.soft.mostKept, max(pair.contacts[k].normalSpeed, abs(pair.contacts[k].tangentSpeed)));
     }
-    impl.groups.add(a, state_.bodies.valueAt(a).isDynamic(), b, state_.bodies.valueAt(b).isDynamic(),
-                    pair.count == 1);
+    // As they were placed: the same as the bodies', and nearer.
+    const auto moves = [&](std::uint32_t body) { return impl.poses[body].type == BodyType::dynamicBody; };
+    impl.groups.add(a, moves(a), b, moves(b), pair.count == 1);
   }
   impl.groups.sort(impl.groupOrder);
 }
@@ -181,7 +182,7 @@ void Space<S>::softTakeBodies(S dt) {
       impl.solverIndex[i] = Impl::kFree | static_cast<std::uint32_t>(soft.free.size());
       soft.addFree(start);
     } else {
-      start.momentPerMass = momentPerMass(body);
+      start.momentPerMass = body.momentPerMass();
       if constexpr (FixedNumber<S>) start.radiusBits = radiusBits(impl, i, body);
       impl.solverIndex[i] = soft.add(start);
       frame(i, impl.solverIndex[i], start.radiusBits);

@@ -154,13 +154,6 @@ Pair<S> newPair(ShapeId a, ShapeId b) {
 
 }  // namespace
 
-/// Whether two shapes whose boxes overlap may collide at all. MIS: queryReject
-template <Scalar S>
-bool Space<S>::mayCollide(std::uint32_t a, std::uint32_t b) const {
-  const ShapeTraits<S>&traitsA = impl_->traits[a], &traitsB = impl_->traits[b];
-  return traitsA.body != traitsB.body && accepts(traitsA.filter, traitsB.filter);
-}
-
 /// How far apart two boxes may be for their shapes to be a pair, m.
 template <Scalar S>
 S Space<S>::pairMargin() const {
@@ -171,6 +164,12 @@ namespace {
 
 /// Of a pair, by which pairs are sorted.
 std::uint64_t sortKey(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
+
+/// Whether two shapes whose boxes overlap may collide at all. MIS: queryReject
+template <Scalar S>
+[[gnu::always_inline]] inline bool mayCollide(const ShapeTraits<S>& a, const ShapeTraits<S>& b) {
+  return a.body != b.body && accepts(a.filter, b.filter);
+}
 
 /// As intersects with a box grown by a margin, without a branch: for boxes that are near each other, whether
 /// they overlap is as good as random.
@@ -189,7 +188,6 @@ template <Scalar S>
 template <Scalar S>
 void Space<S>::findPairs() {
   Impl& impl = *impl_;
-  const auto& pairs = state_.pairs;
   const S margin = pairMargin();
   if (impl.dynamicTree.margin() != margin) {
     impl.dynamicTree.setMargin(margin);
@@ -197,20 +195,26 @@ void Space<S>::findPairs() {
   }
   impl.dynamicTree.updatePairs();
   const std::vector<KeyPair>& candidates = impl.dynamicTree.pairs();
-  impl.overlapping.resize(pairs.size() + candidates.size());
+  impl.overlapping.resize(state_.pairs.size() + candidates.size());
   impl.newPairs.clear();
   impl.pairRuns.clear();
   typename Impl::PairRun run{0, 0, 0};
-  const std::uint32_t count = static_cast<std::uint32_t>(pairs.size());
+  const std::uint32_t count = static_cast<std::uint32_t>(state_.pairs.size());
+  // Bytes may be a part of anything: what is not asked for again is not asked for after each of them.
+  const Pair<S>* const pairs = state_.pairs.data();
+  const PlacedShape<S>* const placed = impl.placed.data();
+  const ShapeTraits<S>* const traits = impl.traits.data();
+  std::uint8_t* const overlapping = impl.overlapping.data();
   std::uint32_t old = 0, to = 0;
+  const auto beginRun = [&] {
+    impl.pairRuns.push_back(run);
+    run = {old, old, std::int64_t{to} - old};
+  };
   const auto keep = [&](std::uint8_t overlap) {
-    const std::int64_t shift = std::int64_t{to} - old;
-    if (shift != run.shift) {
-      impl.pairRuns.push_back(run);
-      run = {old, old, shift};
-    }
+    if (std::int64_t{to} - old != run.shift) [[unlikely]]
+      beginRun();
     run.end = ++old;
-    impl.overlapping[to++] = overlap;
+    overlapping[to++] = overlap;
   };
   // Its boxes came apart: only a contact that may come back is kept, and one whose end is still to be told.
   const auto leave = [&] {
@@ -232,18 +236,18 @@ void Space<S>::findPairs() {
     for (std::size_t i = begin; i < end; ++i) {
       const auto [a, b] = candidates[i];
       close[found] = sortKey(a, b);
-      found += nearBoxes(impl.placed[a].box, margin, impl.placed[b].box) ? 1 : 0;
+      found += nearBoxes(placed[a].box, margin, placed[b].box) ? 1 : 0;
     }
     for (std::size_t i = 0; i < found; ++i) {
       const std::uint64_t key = close[i];
       const std::uint32_t a = static_cast<std::uint32_t>(key >> 32), b = static_cast<std::uint32_t>(key);
-      if (!mayCollide(a, b)) continue;
+      if (!mayCollide(traits[a], traits[b])) continue;
       while (old < count && keyOf(pairs[old]) < key) leave();
       if (old < count && keyOf(pairs[old]) == key) {
         keep(1);
       } else {
         impl.newPairs.push_back({to, a, b});
-        impl.overlapping[to++] = 1;
+        overlapping[to++] = 1;
       }
     }
   }

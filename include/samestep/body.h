@@ -85,6 +85,8 @@ class Body {
   Scaled<S> exactMoment() const { return isDynamic() ? moment_ : Scaled<S>{}; }
   /// 1/(kg m^2), 0 where nothing turns it.
   Scaled<S> inverseMoment() const { return inverseMoment_; }
+  /// Inverse moment times mass, 1/m^2, held at kMaxRelativeMoment; 0 of a body that nothing turns.
+  S momentPerMass() const { return momentPerMass_; }
 
   /// @throws StaticBodyMass, NaNMass, NegativeMass, InfiniteMass, MassOutOfRange
   /// MIS: bodySetMass
@@ -284,6 +286,7 @@ class Body {
   Vector<S> rotation_{S(1), S(0)};
   Scaled<S> inverseMass_{};
   Scaled<S> inverseMoment_{};
+  S momentPerMass_{};
   // Which Space it belongs to, and as which object: given by the Space, not part of the state.
   BodyId id_{};
   std::uint32_t owner_ = 0;

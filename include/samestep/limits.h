@@ -36,6 +36,9 @@ template <Scalar S>
 inline constexpr S kMinMoment = ratio<S>(1, 1 << 20);
 template <Scalar S>
 inline constexpr S kMaxMoment = S(1 << 30);
+/// Of the inverse moment times a mass, 1/m^2: a disc of 2^-5 m has 2^11.
+template <Scalar S>
+inline constexpr S kMaxRelativeMoment = S(1 << 18);
 /// Of each component of an acceleration, m/s^2.
 template <Scalar S>
 inline constexpr S kMaxAcceleration = S(1 << 15);
