@@ -445,25 +445,16 @@ void BlockSolver<S, N>::storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs
   for (int lane = 0; lane < N::kLanes; ++lane) {
     if (rest.pair[lane] == Rest::kNoPair) continue;
     // The lighter body has the larger share.
-    const auto shareA = block.shareA[lane];
+    const auto share = units_.larger(block.shareA[lane]);
     Pair<S>& pair = pairs[rest.pair[lane]];
-    const auto speedOf = [&](S sum) {
-      if constexpr (kIntegers) {
-        const std::int32_t lighter = max(shareA, (1 << N::kUnitBits) - shareA);
-        return S::fromRaw(units::scaled<N::kUnitBits>(lighter, sum.raw()));
-      } else {
-        return sum * max(shareA, S(1) - shareA);
-      }
-    };
+    const auto speedOf = [&](typename N::Sum sum) { return units_.perMass(share, sum); };
     for (int k = 0; k < block.count[lane]; ++k) {
       Contact<S>& contact = pair.contacts[k];
-      const S normalTotal = units_.fromSum(rest.normalTotal[k][lane]);
-      const S tangentTotal = units_.fromSum(rest.tangentTotal[k][lane]);
-      contact.normalSpeed = speedOf(units_.fromSum(block.point[k].normal.sum[lane]));
-      contact.tangentSpeed = speedOf(units_.fromSum(block.point[k].tangent.sum[lane]));
-      contact.normalTotal = speedOf(min(normalTotal, kMaxSum<S>));
-      contact.tangentTotal = speedOf(clamp(tangentTotal, -kMaxSum<S>, kMaxSum<S>));
-      highWater<S>("soft step: impulse total", normalTotal);
+      contact.normalSpeed = speedOf(block.point[k].normal.sum[lane]);
+      contact.tangentSpeed = speedOf(block.point[k].tangent.sum[lane]);
+      contact.normalTotal = min(speedOf(rest.normalTotal[k][lane]), kMaxSum<S>);
+      contact.tangentTotal = clamp(speedOf(rest.tangentTotal[k][lane]), -kMaxSum<S>, kMaxSum<S>);
+      highWater<S>("soft step: impulse total", contact.normalTotal);
     }
   }
 }

@@ -146,6 +146,8 @@ class SoftUnits<S, PlainNumbers<S, kSpins>> {
     }
   }
   static S perUnit(S kept, S perSpeed) { return kept * perSpeed; }
+  static S larger(S share) { return max(share, S(1) - share); }
+  static S perMass(S share, S sum) { return sum * share; }
   static S unit(S x) { return x; }
   static S factor(S x) { return x; }
   static S mostSpeed(S x, int) { return x; }
@@ -235,6 +237,16 @@ class SoftUnits<S, N> {
     if (perSpeed == 1 << (units::kPerSpeedBits + 1)) return kept + kept;
     return static_cast<Sum>(units::scaled<units::kPerSpeedBits>(perSpeed, kept));
   }
+  /// Of both bodies' shares.
+  static std::int32_t larger(std::int32_t share) { return max(share, (1 << N::kUnitBits) - share); }
+  /// An impulse u as the speed of the body of that share.
+  [[gnu::always_inline]] S perMass(std::int32_t share, Sum sum) const {
+    if constexpr (kWide) {
+      return S::fromRaw(units::scaled<N::kUnitBits>(share, sum));
+    } else {
+      return S::fromRaw(units::shifted(std::int64_t{share} * sum, N::kUnitBits + speedBits_ - 32));
+    }
+  }
   /// Of what is in [-1, 1].
   [[gnu::always_inline]] static std::int32_t unit(S x) {
     return narrow(units::rounded<32 - N::kUnitBits>(x.raw()));
@@ -258,8 +270,14 @@ class SoftUnits<S, N> {
   }
   /// A way in a body's coordinates, by its radius.
   [[gnu::always_inline]] static std::int32_t arm(S x, int radiusBits) {
-    constexpr std::int64_t kOne = std::int64_t{1} << N::kUnitBits;
-    return narrow(clamp(units::shifted(x.raw(), 32 - N::kUnitBits + radius(radiusBits)), -kOne, kOne));
+    const int bits = radius(radiusBits);
+    const std::int64_t most = std::int64_t{1} << (32 + min(bits, 29));
+    const std::int64_t in = clamp(x.raw(), -most, most);
+    if (bits > N::kUnitBits - 32) [[likely]] {
+      return narrow((in + (std::int64_t{1} << (31 - N::kUnitBits + bits)) - (in < 0)) >>
+                    (32 - N::kUnitBits + bits));
+    }
+    return narrow(in << (N::kUnitBits - 32 - bits));
   }
   [[gnu::always_inline]] Speed speed(S x, std::int64_t& misfit) const { return speedOf(x, 0, misfit); }
   [[gnu::always_inline]] Speed turn(S x, int radiusBits, std::int64_t& misfit) const {

@@ -11,7 +11,8 @@
 namespace samestep::kernels {
 
 const SoftPasses<FastNumbers>* const fastAvx2 =
-    &kPassesOf<TwoLanes<FastLanes<FastAvx2>>, CoefficientLanes<FastAvx2, FastNumbers>, FastLanes<FastSse42>>;
+    &kPassesOf<TwoLanes<FastLanes<FastAvx2>>, TwoLanes<CoefficientLanes<FastAvx2, FastNumbers>>,
+               FastLanes<FastSse42>>;
 const SoftPasses<WideNumbers>* const wideAvx2 =
     &kPassesOf<TwoLanes<WideLanes<WideAvx2>>, CoefficientLanes<FastAvx2, WideNumbers>, WideLanes<WideAvx2>>;
 

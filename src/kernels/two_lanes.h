@@ -112,6 +112,15 @@ class TwoLanes {
   [[gnu::always_inline]] static V soften(const Softness<C>& soft, const V& full, const V& before) {
     return dot2(soft.massScale, full, soft.impulseScale, before);
   }
+  [[gnu::always_inline]] static V arm(const V& v) { return {L::arm(v.a), L::arm(v.b)}; }
+  [[gnu::always_inline]] V spin(const C& moment, const V& arm) {
+    return {lanes_.spin(moment.a, arm.a), lanes_.spin(moment.b, arm.b)};
+  }
+  [[gnu::always_inline]] static V mass(const V& present, const V& spinA, const V& armA, const V& spinB,
+                                       const V& armB) {
+    return {L::mass(present.a, spinA.a, armA.a, spinB.a, armB.a),
+            L::mass(present.b, spinA.b, armA.b, spinB.b, armB.b)};
+  }
   static void note(const char*, const V&) {}
   [[gnu::always_inline]] V checked(const V& v) { return {lanes_.checked(v.a), lanes_.checked(v.b)}; }
   [[gnu::always_inline]] V checkedChange(const V& v) {
