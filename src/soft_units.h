@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <samestep/scalar.h>
+#include <samestep/vector.h>
 
 #include "contact_block.h"
 
