@@ -15,7 +15,8 @@ int countAfter(const std::string& text, const std::string& prefix) {
   return read.ec == std::errc() && read.ptr == end && count <= 100 ? count : 0;
 }
 
-std::unique_ptr<World> makeSamestep(const std::string& engine, const PeerScene& scene, const char* prefix,
+std::unique_ptr<World> makeSamestep(const std::string& engine, const PeerScene& scene, KernelTarget kernel,
+                                    const char* prefix,
                                     std::unique_ptr<World> (*make)(const PeerScene&, SolverChoice)) {
   const std::pair<const char*, SolverChoice> kinds[] = {
       {"impulses", {}}, {"soft", {true, false, 0}}, {"fast", {true, true, 0}}};
@@ -24,6 +25,7 @@ std::unique_ptr<World> makeSamestep(const std::string& engine, const PeerScene& 
   for (auto [kind, choice] : kinds) {
     choice.count = countAfter(engine.substr(0, shared ? mark : engine.size()), std::string(prefix) + kind);
     choice.workers = shared ? countAfter(engine.substr(mark), "x") : 1;
+    choice.kernel = kernel;
     if (choice.workers == 0) return nullptr;
     if (choice.count > 0) return make(scene, choice);
   }
@@ -32,14 +34,14 @@ std::unique_ptr<World> makeSamestep(const std::string& engine, const PeerScene& 
 
 }  // namespace
 
-std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene) {
+std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene, KernelTarget kernel) {
   if (engine == "chipmunk") return makeChipmunk(scene, 10);
   if (const int iterations = countAfter(engine, "chipmunk"); iterations > 0) {
     return makeChipmunk(scene, iterations);
   }
   if (engine == "box2d24") return makeBox2d(scene);
-  if (auto world = makeSamestep(engine, scene, "samestep-double-", makeDouble)) return world;
-  return makeSamestep(engine, scene, "samestep-fixed-", makeFixed);
+  if (auto world = makeSamestep(engine, scene, kernel, "samestep-double-", makeDouble)) return world;
+  return makeSamestep(engine, scene, kernel, "samestep-fixed-", makeFixed);
 }
 
 }  // namespace samestep::bench

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <samestep/kernel.h>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +33,7 @@ struct SolverChoice {
   bool fast = false;  ///< The soft step at fast precision.
   int count = 10;     ///< Substeps of the soft step, or iterations of the sequential impulses.
   int workers = 1;    ///< Threads.
+  KernelTarget kernel = KernelTarget::best;
 };
 
 std::unique_ptr<World> makeDouble(const PeerScene& scene, SolverChoice solver);
@@ -40,7 +43,9 @@ std::unique_ptr<World> makeBox2d(const PeerScene& scene);
 
 /// The scene in the engine of that name: `chipmunk` (10 iterations; `chipmunkN` for N), `box2d24` (8 velocity
 /// and 3 position iterations), `samestep-double-impulsesN`, `samestep-double-softN` (N substeps), and the
-/// same with `fixed`; these also with `xN` for N workers. Null if there is no such engine.
-std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene);
+/// same with `fixed`; these also with `xN` for N workers. Of Samestep the kernel is that of the target, if it
+/// is available. Null if there is no such engine.
+std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene,
+                                 KernelTarget kernel = KernelTarget::best);
 
 }  // namespace samestep::bench

@@ -29,6 +29,7 @@ class SamestepWorld : public World {
     if (solver.soft) {
       space_.setSolver(SolverKind::softStep);
       space_.setSubsteps(solver.count);
+      space_.setKernel(solver.kernel);
       if (solver.fast) space_.setPrecision(ContactPrecision::fast);
     } else {
       space_.setSolver(SolverKind::sequentialImpulses);

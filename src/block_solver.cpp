@@ -20,6 +20,7 @@ SoftPasses<N> passesFor(KernelTarget target) {
   if constexpr (std::same_as<N, WideNumbers>) {
     // A scalar that checks has one kernel, which tells.
     if constexpr (!S::kChecks) {
+      if (target == KernelTarget::avx512 && kernels::wideAvx512 != nullptr) return *kernels::wideAvx512;
       if (target == KernelTarget::avx2 && kernels::wideAvx2 != nullptr) return *kernels::wideAvx2;
       if (target == KernelTarget::neon && kernels::wideNeon != nullptr) return *kernels::wideNeon;
       if (target == KernelTarget::simd128 && kernels::wideSimd128 != nullptr) return *kernels::wideSimd128;
@@ -27,6 +28,7 @@ SoftPasses<N> passesFor(KernelTarget target) {
     }
     return kPassesOf<WideScalarLanes<S>, CoefficientLanes<OneAtATime, WideNumbers>>;
   } else if constexpr (std::same_as<N, FastNumbers>) {
+    if (target == KernelTarget::avx512 && kernels::fastAvx512 != nullptr) return *kernels::fastAvx512;
     if (target == KernelTarget::avx2 && kernels::fastAvx2 != nullptr) return *kernels::fastAvx2;
     if (target == KernelTarget::neon && kernels::fastNeon != nullptr) return *kernels::fastNeon;
     if (target == KernelTarget::simd128 && kernels::fastSimd128 != nullptr) return *kernels::fastSimd128;
@@ -35,6 +37,7 @@ SoftPasses<N> passesFor(KernelTarget target) {
   } else if constexpr (FixedNumber<S>) {
     return kPassesOf<ScalarLanes<S>>;
   } else {
+    if (target == KernelTarget::avx512 && kernels::doubleAvx512 != nullptr) return *kernels::doubleAvx512;
     if (target == KernelTarget::avx2 && kernels::doubleAvx2 != nullptr) return *kernels::doubleAvx2;
     return kernels::doubleBy2;
   }

@@ -102,7 +102,7 @@ template <class N>
 struct BlockPoint {
   BlockAxis<N> normal, tangent;
   /// Between the surfaces along the normal when the step began, m.
-  alignas(32) typename N::Speed separation[N::kLanes];
+  alignas(64) typename N::Speed separation[N::kLanes];
   /// How fast the surfaces may still come nearer, or, if not above 0, the speed at which a spring holds them
   /// to overlap less: by where the bodies were when they moved last, m/s.
   typename N::Speed target[N::kLanes];
@@ -147,7 +147,7 @@ struct alignas(64) ContactBlock {
   std::uint8_t bounces, strikes;
   /// Of 32 bits: the friction is 2^this times what is written, where that does not hold it.
   std::uint8_t frictionShift;
-  alignas(32) typename N::Coefficient normalX[N::kLanes];
+  alignas(64) typename N::Coefficient normalX[N::kLanes];
   typename N::Coefficient normalY[N::kLanes];
   /// The part of u that changes the speed of A; the rest that of B.
   typename N::Coefficient shareA[N::kLanes];
@@ -163,7 +163,7 @@ struct alignas(64) ContactBlock {
 
 /// What a block needs once in a while.
 template <class N>
-struct alignas(32) BlockRest {
+struct alignas(64) BlockRest {
   /// The sums added up over the substeps.
   typename N::Sum normalTotal[2][N::kLanes], tangentTotal[2][N::kLanes];
   /// What a bounce shall leave, m/s; 0 for none.

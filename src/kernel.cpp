@@ -8,7 +8,7 @@ namespace {
 
 /// What was built and what the processor has: that of the fast kernels stands for both.
 struct Available {
-  KernelTarget targets[4] = {KernelTarget::portable};
+  KernelTarget targets[5] = {KernelTarget::portable};
   std::uint32_t count = 1;
 
   Available() {
@@ -18,6 +18,11 @@ struct Available {
     }
     if (kernels::fastAvx2 != nullptr && __builtin_cpu_supports("avx2")) {
       targets[count++] = KernelTarget::avx2;
+    }
+    if (kernels::fastAvx512 != nullptr && __builtin_cpu_supports("avx512f") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512vl")) {
+      targets[count++] = KernelTarget::avx512;
     }
 #endif
     if (kernels::fastNeon != nullptr) targets[count++] = KernelTarget::neon;
@@ -37,6 +42,8 @@ const char* kernelName(KernelTarget target) {
       return "sse42";
     case KernelTarget::avx2:
       return "avx2";
+    case KernelTarget::avx512:
+      return "avx512";
     case KernelTarget::neon:
       return "neon";
     case KernelTarget::simd128:

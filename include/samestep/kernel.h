@@ -15,16 +15,18 @@ enum class KernelTarget : std::uint8_t {
   portable = 1,
   sse42 = 2,
   avx2 = 3,
+  /// With the parts F, DQ, BW and VL.
+  avx512 = 4,
   /// 64-bit ARM.
-  neon = 4,
+  neon = 5,
   /// WebAssembly, built with -msimd128.
-  simd128 = 5,
+  simd128 = 6,
 };
-inline constexpr KernelTarget kKernelTargets[] = {KernelTarget::best,  KernelTarget::portable,
-                                                  KernelTarget::sse42, KernelTarget::avx2,
-                                                  KernelTarget::neon,  KernelTarget::simd128};
+inline constexpr KernelTarget kKernelTargets[] = {
+    KernelTarget::best,   KernelTarget::portable, KernelTarget::sse42,  KernelTarget::avx2,
+    KernelTarget::avx512, KernelTarget::neon,     KernelTarget::simd128};
 
-/// "best", "portable", "sse42", "avx2", "neon", "simd128".
+/// "best", "portable", "sse42", "avx2", "avx512", "neon", "simd128".
 const char* kernelName(KernelTarget target);
 /// The target of a name; false if there is none, and `target` stays as it is.
 bool findKernel(std::string_view name, KernelTarget& target);

@@ -12,7 +12,7 @@ struct TwoDoubles {
 };
 
 /// Two at a time: SSE2, NEON, wasm's simd128, or what the compiler makes of it elsewhere.
-struct DoubleLanes2 : DoubleLanes<TwoDoubles> {
+struct DoubleLanes2 : DoubleLanes<ChosenDoubles<TwoDoubles>> {
   [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
                                                     V& turn) {
     gather(bodies[at[0]].velocity, bodies[at[1]].velocity, x, y);

@@ -12,7 +12,7 @@ struct FourDoubles {
 };
 
 /// Four at a time: AVX2.
-struct DoubleLanes4 : DoubleLanes<FourDoubles> {
+struct DoubleLanes4 : DoubleLanes<ChosenDoubles<FourDoubles>> {
   [[gnu::always_inline]] static void gatherVelocity(const Body* bodies, const std::uint32_t* at, V& x, V& y,
                                                     V& turn) {
     V none;

@@ -11,13 +11,16 @@ namespace samestep::kernels {
 /// Two doubles at a time, in vectors that every compiler translates.
 extern const SoftPasses<PlainNumbers<double, false>> doubleBy2;
 extern const SoftPasses<PlainNumbers<double, false>>* const doubleAvx2;
+extern const SoftPasses<PlainNumbers<double, false>>* const doubleAvx512;
 
 /// One integer at a time; what the wide ones do that way depends on the scalar, see scalar_lanes.h.
 extern const SoftPasses<FastNumbers> fastBy1;
 extern const SoftPasses<FastNumbers>* const fastSse42;
 extern const SoftPasses<FastNumbers>* const fastAvx2;
+extern const SoftPasses<FastNumbers>* const fastAvx512;
 extern const SoftPasses<WideNumbers>* const wideSse42;
 extern const SoftPasses<WideNumbers>* const wideAvx2;
+extern const SoftPasses<WideNumbers>* const wideAvx512;
 /// Every processor of 64-bit ARM can run these.
 extern const SoftPasses<FastNumbers>* const fastNeon;
 extern const SoftPasses<WideNumbers>* const wideNeon;
