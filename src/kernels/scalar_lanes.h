@@ -176,7 +176,7 @@ struct ScalarLanes {
     return spin * impulse;
   }
   /// What speeds and spins are held at between two contacts, m/s and rad/s.
-  static constexpr S kMostSpeed = S(1 << 22), kMostSpin = S(1 << 19);
+  static constexpr S kMostSpeed = S(1 << 22), kMostSpin = S(1 << 14);
 
  private:
   [[gnu::always_inline]] static V spins(const V& spin, const V& change) {
