@@ -42,23 +42,6 @@ inline void expectNear(double a, double b, double tolerance, const char* claim) 
   expectAtMost(std::fabs(a - b), tolerance, claim);
 }
 
-/// While it lives, CheckedFixed wraps as Fixed does in place of throwing, if `wanted`.
-class AllowOverflows {
- public:
-  explicit AllowOverflows(bool wanted) : wanted_(wanted) {
-    if (wanted_) before_ = setOverflowHandler([](const OverflowReport&) {});
-  }
-  ~AllowOverflows() {
-    if (wanted_) setOverflowHandler(before_);
-  }
-  AllowOverflows(const AllowOverflows&) = delete;
-  AllowOverflows& operator=(const AllowOverflows&) = delete;
-
- private:
-  bool wanted_;
-  OverflowHandler before_ = nullptr;
-};
-
 /// Runs a target. Whatever it lets out is a finding: an internal error, or the overflow of a checked number.
 template <class Run>
 void guarded(Run&& run) {

@@ -54,8 +54,6 @@ std::vector<std::uint64_t> run(const Bytes& bytes) {
     expect(steps == reader.ticks(), "the steps are as many as the end says");
     const Settings<S>& settings = reader.initialWorld().settings;
     if (settings.iterations > 20 || settings.substeps > 8) return hashes;
-    // As in the target `snapshot`.
-    const AllowOverflows allowed(settings.solver == SolverKind::softStep);
     Replay<S> replay(bytes, wiring<S>(), kFuzzLimits);
     while (replay.tick() < kMostTicks && replay.step()) hashes.push_back(replay.space().hash());
   } catch (const FormatError& error) {

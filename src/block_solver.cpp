@@ -73,6 +73,19 @@ constexpr int kMorePasses = 2;
 /// unit of arms.
 constexpr int kNearBits = 3;
 
+/// One of the velocities of a body, as held between two contacts.
+template <class S, class N>
+typename N::Speed heldSpeed(typename N::Speed speed, int which) {
+  if constexpr (std::same_as<N, WideNumbers>) {
+    return clamp(speed, -N::kMostSpeed, N::kMostSpeed);
+  } else if constexpr (std::same_as<N, PlainNumbers<S, true>>) {
+    const S most = which == 2 ? ScalarLanes<S>::kMostSpin : ScalarLanes<S>::kMostSpeed;
+    return clamp(speed, -most, most);
+  } else {
+    return speed;
+  }
+}
+
 }  // namespace
 
 template <Scalar S, class N>
@@ -392,7 +405,7 @@ void BlockSolver<S, N>::bounce() {
       const S shareA = units_.fromUnit(block.shareA[lane]);
       for (int k = 0; k < block.count[lane]; ++k) {
         auto& axis = block.point[k].normal;
-        const S wanted = units_.fromSum(rest.bounce[k][lane]);
+        const S wanted = min(units_.fromSum(rest.bounce[k][lane]), kMaxSum<S>);
         if (wanted == S(0) || units_.fromSum(rest.normalTotal[k][lane]) == S(0)) continue;
         const auto speedOf = [&](std::uint32_t body, int which) {
           return units_.fromSpeed(bodies_[body].velocity[which]);
@@ -411,24 +424,26 @@ void BlockSolver<S, N>::bounce() {
         rest.normalTotal[k][lane] = units_.sum(units_.fromSum(rest.normalTotal[k][lane]) + change, misfit);
         const auto push = [&](std::uint32_t index, S share, S along, S turn, int radiusBits) {
           SoftBody<N>& body = bodies_[index];
-          body.velocity[0] = units_.speed(speedOf(index, 0) + share * (n.x * along), misfit);
-          body.velocity[1] = units_.speed(speedOf(index, 1) + share * (n.y * along), misfit);
-          body.velocity[2] =
-              units_.turn(units_.fromTurn(body.velocity[2], radiusBits) + turn, radiusBits, misfit);
+          body.velocity[0] =
+              heldSpeed<S, N>(units_.speed(speedOf(index, 0) + share * (n.x * along), misfit), 0);
+          body.velocity[1] =
+              heldSpeed<S, N>(units_.speed(speedOf(index, 1) + share * (n.y * along), misfit), 1);
+          body.velocity[2] = heldSpeed<S, N>(
+              units_.turn(units_.fromTurn(body.velocity[2], radiusBits) + turn, radiusBits, misfit), 2);
         };
         const auto spin = [&](bool ofB) {
           if constexpr (N::kStoresSpins) {
-            return ofB ? units_.fromSpin(axis.spinB[lane], radiusB)
-                       : units_.fromSpin(axis.spinA[lane], radiusA);
+            return ScalarLanes<S>::spinOf(
+                ofB ? units_.fromSpin(axis.spinB[lane], radiusB) : units_.fromSpin(axis.spinA[lane], radiusA),
+                change);
           } else {
-            return ofB ? block.moments.momentB[lane] * axis.armB[lane]
-                       : block.moments.momentA[lane] * axis.armA[lane];
+            return (ofB ? block.moments.momentB[lane] * axis.armB[lane]
+                        : block.moments.momentA[lane] * axis.armA[lane]) *
+                   change;
           }
         };
-        if ((block.fixedA >> lane & 1) == 0) push(indexA, shareA, -change, -(spin(false) * change), radiusA);
-        if ((block.fixedB >> lane & 1) == 0) {
-          push(indexB, S(1) - shareA, change, spin(true) * change, radiusB);
-        }
+        if ((block.fixedA >> lane & 1) == 0) push(indexA, shareA, -change, -spin(false), radiusA);
+        if ((block.fixedB >> lane & 1) == 0) push(indexB, S(1) - shareA, change, spin(true), radiusB);
       }
     }
   }

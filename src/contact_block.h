@@ -36,6 +36,8 @@ struct WideNumbers : IntegerUnits {
   using Speed = std::int64_t;
   using Sum = std::int64_t;
   static constexpr int kFrictionBits = 22;
+  /// What speeds are held at, by the radius where they turn: 2^26 m/s; and limits of friction, 2^20 m/s.
+  static constexpr std::int64_t kMostSpeed = std::int64_t{1} << 58, kMostLimit = std::int64_t{1} << 52;
 };
 
 /// All in 32 bits. Speeds and impulses have one unit for the whole step, chosen by the largest of them, and

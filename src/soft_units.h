@@ -16,6 +16,9 @@ namespace samestep {
 /// The radius, in powers of two metres, of what may be of any size since it does not move.
 inline constexpr int kAnyRadiusBits = 24;
 
+/// What is farther apart than two to the power of it, in metres, or overlaps more, counts as that far.
+inline constexpr int kMostNearBits = 11;
+
 /// What the soft step is told of a body that touches something.
 template <Scalar S>
 struct SoftStart {
@@ -131,7 +134,8 @@ class SoftUnits<S, PlainNumbers<S, kSpins>> {
  public:
   bool choose(const SoftSettings<S>&, const std::vector<SoftStart<S>>&, S) { return true; }
   SoftConstants<PlainNumbers<S, kSpins>> constants(const SoftSettings<S>& of, S mostSum) const {
-    return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, S(0), S(0), of.substep};
+    constexpr S kMost = S(1 << kMostNearBits);
+    return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, kMost, kMost, of.substep};
   }
 
   static Shares<S> shares(S massA, S massB) {
@@ -217,6 +221,7 @@ class SoftUnits<S, N> {
     to.mostSum = sum(mostSum, held);
     if constexpr (kWide) {
       to.substep = of.substep.raw() << finer_;
+      to.mostGap = to.mostOverlap = std::int64_t{1} << (kMostNearBits + wayBits_);
     } else {
       to.substep = narrow(units::shifted(of.substep.raw(), 32 - finer_ - N::kUnitBits));
       // What is farther apart is not reached within a substep at any speed in range; what overlaps more is

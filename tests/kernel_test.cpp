@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kernels/integer_lanes.h"
 #include "kernels/kernels.h"
 #include "kernels/scalar_lanes.h"
 #include "kernels/soft_passes.h"
@@ -88,6 +89,10 @@ struct DoubleSource {
   double friction() { return 2 * part(); }
   double speed() { return number(16); }
   double way() { return number(0.25); }
+  double push() { return speed(); }
+  double surface() { return speed(); }
+  double bend() { return way(); }
+  double separation() { return way(); }
   double sum() { return number(4); }
   double positive() { return 4 * part(); }
   double limit() { return 8 + 64 * part(); }
@@ -108,18 +113,30 @@ struct IntegerSource {
   using Numbers = N;
   using Speed = typename N::Speed;
   Random random;
+  static constexpr bool kWide = std::same_as<N, WideNumbers>;
   /// Of speeds, ways and impulses.
   int bits = 20;
+  Speed upTo(int most) { return static_cast<Speed>(wide(std::min(bits, most))); }
   std::int64_t wide(int width) { return static_cast<std::int64_t>(random.next()) >> (63 - width); }
   std::int32_t number(int width) { return static_cast<std::int32_t>(wide(width)); }
   std::int32_t unit() { return number(N::kUnitBits); }
   std::int32_t part() { return number(N::kUnitBits) & ((1 << N::kUnitBits) - 1); }
-  std::int32_t friction() { return number(N::kFrictionBits) & ((1 << N::kFrictionBits) - 1); }
-  Speed speed() { return static_cast<Speed>(wide(bits)); }
-  Speed way() { return static_cast<Speed>(wide(bits)); }
-  typename N::Sum sum() { return static_cast<typename N::Sum>(wide(bits)); }
+  std::int32_t friction() {
+    const int width = kWide ? 31 : N::kFrictionBits;
+    return number(width) & static_cast<std::int32_t>((std::int64_t{1} << width) - 1);
+  }
+  std::int32_t spin() { return kWide ? number(31) : unit() >> 4; }
+  // Each up to its own end of the wide kernel's range.
+  Speed speed() { return upTo(58); }
+  Speed push() { return upTo(62); }
+  Speed surface() { return upTo(44); }
+  Speed way() { return upTo(57); }
+  Speed bend() { return upTo(53); }
+  Speed separation() { return upTo(56); }
+  typename N::Sum sum() { return upTo(53); }
   typename N::Sum positive() {
-    return static_cast<typename N::Sum>(wide(bits) & ((std::int64_t{1} << bits) - 1));
+    const typename N::Sum any = sum();
+    return std::max(any, ~any);
   }
   Speed limit() { return static_cast<Speed>(wide(bits + 1) & ((std::int64_t{2} << bits) - 1)); }
   Speed kept() {
@@ -128,7 +145,7 @@ struct IntegerSource {
   }
   std::uint8_t bendBits() {
     return static_cast<std::uint8_t>(std::same_as<N, FastNumbers> ? random.between(1, 63)
-                                                                  : random.between(0, 38));
+                                                                  : random.between(0, 24));
   }
   void constants(SoftConstants<N>& to) {
     const std::int32_t one = 1 << N::kUnitBits;
@@ -139,7 +156,12 @@ struct IntegerSource {
     to.mostSum = std::numeric_limits<typename N::Sum>::max() / 2;
     to.mostGap = (1 << 28) / 4;
     to.mostOverlap = 1 << 28;
-    to.substep = kept();
+    if constexpr (kWide) {
+      to.mostGap = to.mostOverlap = std::int64_t{1} << 43;
+      to.mostSum = std::int64_t{1} << 52;
+    }
+    // Of more than three in a step.
+    to.substep = kept() >> 2;
   }
 };
 using FastSource = IntegerSource<FastNumbers>;
@@ -153,11 +175,11 @@ Work<N> randomWork(Source& from) {
       body.velocity[k] = from.speed();
       body.moved[k] = from.way();
     }
-    body.moved[3] = from.way();
+    body.moved[3] = from.bend();
   }
   for (auto& drive : work.drives) {
     for (int k = 0; k < 3; ++k) {
-      drive.push[k] = from.speed();
+      drive.push[k] = from.push();
       drive.base[k] = from.speed();
       drive.limit[k] = from.limit();
     }
@@ -192,8 +214,10 @@ Work<N> randomWork(Source& from) {
       block.normalX[lane] = from.unit();
       block.normalY[lane] = from.unit();
       block.shareA[lane] = from.part();
+      block.pushAX[lane] = from.part();
+      block.pushAY[lane] = from.part();
       block.friction[lane] = from.friction();
-      block.surface[lane] = from.speed();
+      block.surface[lane] = from.surface();
       if constexpr (!N::kStoresSpins) {
         block.moments.momentA[lane] = from.part();
         block.moments.momentB[lane] = from.part();
@@ -205,13 +229,13 @@ Work<N> randomWork(Source& from) {
           axis->armB[lane] = from.unit();
           axis->mass[lane] = from.part();
           if constexpr (N::kStoresSpins) {
-            axis->spinA[lane] = from.unit() >> 4;
-            axis->spinB[lane] = from.unit() >> 4;
+            axis->spinA[lane] = from.spin();
+            axis->spinB[lane] = from.spin();
           }
         }
         point.normal.sum[lane] = from.positive();
         point.tangent.sum[lane] = from.sum();
-        point.separation[lane] = from.way();
+        point.separation[lane] = from.separation();
       }
     }
   }
@@ -272,12 +296,14 @@ TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange
 }
 
 TEST(WideKernelTest, EveryKernelGivesTheBitsOfCheckedNumbersWhichReportNothing) {
-  const SoftPasses<WideNumbers> plain = kPassesOf<WideScalarLanes<Fixed>>;
-  const SoftPasses<WideNumbers> checked = kPassesOf<WideScalarLanes<CheckedFixed>>;
+  const SoftPasses<WideNumbers> plain =
+      kPassesOf<WideScalarLanes<Fixed>, CoefficientLanes<OneAtATime, WideNumbers>>;
+  const SoftPasses<WideNumbers> checked =
+      kPassesOf<WideScalarLanes<CheckedFixed>, CoefficientLanes<OneAtATime, WideNumbers>>;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
     WideSource source{Random(seed), 0};
-    // Up to 2^16 m/s, and 2^16 m.
-    source.bits = source.random.between(8, 48);
+    // Up to the ends of all ranges.
+    source.bits = source.random.between(8, 58);
     const Work<WideNumbers> start = randomWork(source);
     Work<WideNumbers> expected = start;
     ASSERT_NO_THROW(expected.run(checked)) << "seed " << seed;

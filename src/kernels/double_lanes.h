@@ -109,6 +109,8 @@ struct DoubleLanes {
   }
   /// A double leaves no range.
   [[gnu::always_inline]] static V checked(V v) { return v; }
+  [[gnu::always_inline]] static V checkedTurn(V v) { return v; }
+  [[gnu::always_inline]] static V checkedSpeed(V v, int) { return v; }
   [[gnu::always_inline]] static V checkedChange(V v) { return v; }
   [[gnu::always_inline]] static V checkedTotal(V v) { return v; }
   [[gnu::always_inline]] static V checkedWay(V v) { return v; }

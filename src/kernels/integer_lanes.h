@@ -71,9 +71,12 @@ class WideLanes {
     return times(unit, x).template over<Numbers::kUnitBits>();
   }
   [[gnu::always_inline]] static V frictionLimit(const ContactBlock<Numbers>&, V friction, V sum) {
-    return times(friction, sum).template over<Numbers::kFrictionBits>();
+    const V limit = times(friction, sum).template over<Numbers::kFrictionBits>();
+    return select(limit > all(Numbers::kMostLimit), all(Numbers::kMostLimit), limit);
   }
-  [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
+  [[gnu::always_inline]] static V near(V separation, const SoftConstants<Numbers>& constants) {
+    return within(separation, all(-constants.mostOverlap), all(constants.mostGap));
+  }
   [[gnu::always_inline]] static V rate(V way, std::int32_t rate) { return WideLanes::rate(way, all(rate)); }
   [[gnu::always_inline]] static V rate(V way, V rate) {
     return times(rate, way).template over<Numbers::kRateBits>();
@@ -123,8 +126,14 @@ class WideLanes {
     return static_cast<std::int64_t>((rounded + (rounded >> 1 & 1)) >> 1 << bits);
   }
 
-  /// Its ranges are kept by contract, see docs/ranges.md.
+  /// What is held keeps the rest in range, see docs/ranges.md.
   [[gnu::always_inline]] static V checked(V v) { return v; }
+  [[gnu::always_inline]] static V checkedTurn(V v) { return v; }
+  [[gnu::always_inline]] static V checkedSpeed(V v, int) {
+    if (Vectors::any(beyond(v))) [[unlikely]]
+      v = held(v);
+    return v;
+  }
   [[gnu::always_inline]] static V checkedChange(V v) { return v; }
   [[gnu::always_inline]] static V checkedTotal(V v) { return v; }
   [[gnu::always_inline]] static V checkedWay(V v) { return v; }
@@ -141,10 +150,22 @@ class WideLanes {
   }
   [[gnu::always_inline]] static void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x,
                                                      V y, V turn) {
+    if (Vectors::any(beyond(x) | beyond(y) | beyond(turn))) [[unlikely]] {
+      x = held(x);
+      y = held(y);
+      turn = held(turn);
+    }
     Vectors::scatter(bodies, at, fixed, x, y, turn);
   }
 
  private:
+  [[gnu::always_inline]] static V held(V speed) {
+    return within(speed, all(-Numbers::kMostSpeed), all(Numbers::kMostSpeed));
+  }
+  /// Not 0 where a speed is to be held; also where it is the limit itself.
+  [[gnu::always_inline]] static V beyond(V speed) {
+    return (speed + Numbers::kMostSpeed) & ~(2 * Numbers::kMostSpeed - 1);
+  }
   /// high * 2^32 + low.
   struct Products {
     V high, low;
@@ -278,6 +299,8 @@ class FastLanes {
     left_ = left_ | (v + Numbers::kRange);
     return v;
   }
+  [[gnu::always_inline]] V checkedTurn(V v) { return checked(v); }
+  [[gnu::always_inline]] V checkedSpeed(V v, int) { return checked(v); }
   [[gnu::always_inline]] V checkedChange(V v) {
     left_ = left_ | ((v << 2) + Numbers::kRange);
     return v;

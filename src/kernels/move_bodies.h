@@ -40,7 +40,7 @@ std::uint64_t driveBodies(SoftBody<N>* bodies, SoftDrive<N>* drives, SoftMarks* 
       const V limit = L::load(drive.limit + k);
       const V base = L::within(free, -limit, limit);
       L::store(drive.base + k, base);
-      L::store(body.velocity + k, lanes.checked(base + given));
+      L::store(body.velocity + k, lanes.checkedSpeed(base + given, k));
       if (L::differ(base, free)) [[unlikely]]
         markHeld<L>(marks[i], k, drive.base + k, free);
     }

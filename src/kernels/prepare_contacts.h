@@ -69,10 +69,10 @@ template <class L, class N = typename L::Numbers>
   V tangentPart = L::zero();
   for (int i = 0; i < block.points; ++i) {
     const auto turn = [&](const auto& axis, V kept) __attribute__((always_inline)) {
-      turnA =
-          lanes.checked(turnA - L::spinA(block.moments, axis, lane, L::coefficient(axis.armA + lane), kept));
-      turnB =
-          lanes.checked(turnB + L::spinB(block.moments, axis, lane, L::coefficient(axis.armB + lane), kept));
+      turnA = lanes.checkedTurn(turnA -
+                                L::spinA(block.moments, axis, lane, L::coefficient(axis.armA + lane), kept));
+      turnB = lanes.checkedTurn(turnB +
+                                L::spinB(block.moments, axis, lane, L::coefficient(axis.armB + lane), kept));
       L::note("contact: kept impulse u", kept);
     };
     const V normal = L::load(block.point[i].normal.sum + lane);

@@ -66,13 +66,16 @@ struct ScalarLanes {
                                           const V& f, const V& g, const V& h) {
     return {dot4(a.a, b.a, -c.a, d.a, e.a, f.a, -g.a, h.a), dot4(a.b, b.b, -c.b, d.b, e.b, f.b, -g.b, h.b)};
   }
-  [[gnu::always_inline]] static V near(const V& separation, const SoftConstants<Numbers>&) {
-    return separation;
+  [[gnu::always_inline]] static V near(const V& separation, const SoftConstants<Numbers>& constants) {
+    return within(separation, -all(constants.mostOverlap), all(constants.mostGap));
   }
   [[gnu::always_inline]] static V product(const V& x, const V& y) { return {x.a * y.a, x.b * y.b}; }
   [[gnu::always_inline]] static V frictionLimit(const ContactBlock<Numbers>&, const V& friction,
                                                 const V& sum) {
-    return product(friction, sum);
+    // What was kept may be twice as large.
+    const V most = all(S(1 << 20));
+    const V limit = product(friction, {min(sum.a, most.a), min(sum.b, most.b)});
+    return {min(limit.a, most.a), min(limit.b, most.b)};
   }
   [[gnu::always_inline]] static V pushing(const V& sum, const SoftConstants<Numbers>& constants) {
     return within(sum, zero(), all(constants.mostSum));
@@ -82,12 +85,12 @@ struct ScalarLanes {
   template <class Axis>
   [[gnu::always_inline]] static V spinA(const BlockMoments<Numbers>&, const Axis& axis, int lane, const V&,
                                         const V& change) {
-    return product(load(axis.spinA + lane), change);
+    return spins(load(axis.spinA + lane), change);
   }
   template <class Axis>
   [[gnu::always_inline]] static V spinB(const BlockMoments<Numbers>&, const Axis& axis, int lane, const V&,
                                         const V& change) {
-    return product(load(axis.spinB + lane), change);
+    return spins(load(axis.spinB + lane), change);
   }
   [[gnu::always_inline]] static V arm(const V& v) { return v; }
   [[gnu::always_inline]] static V spin(const V& moment, const V& arm) {
@@ -113,8 +116,15 @@ struct ScalarLanes {
     const S angle = clamp(turn, S(-1), S(1));
     return min(angle * angle * ratio<S>(1, 2), ratio<S>(1, 8));
   }
-  /// Its ranges are kept by contract, see docs/ranges.md.
+  /// What is held keeps the rest in range, see docs/ranges.md.
   [[gnu::always_inline]] static V checked(const V& v) { return v; }
+  [[gnu::always_inline]] static V checkedTurn(const V& v) {
+    return within(v, all(-kMostSpin), all(kMostSpin));
+  }
+  /// @param first  of the numbers of a body: the third one is its turning
+  [[gnu::always_inline]] static V checkedSpeed(const V& v, int first) {
+    return first == 0 ? heldSpeed(v) : checkedTurn(v);
+  }
   [[gnu::always_inline]] static V checkedChange(const V& v) { return v; }
   [[gnu::always_inline]] static V checkedTotal(const V& v) { return v; }
   [[gnu::always_inline]] static V checkedWay(const V& v) { return v; }
@@ -152,11 +162,29 @@ struct ScalarLanes {
   }
   [[gnu::always_inline]] static void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed,
                                                      const V& x, const V& y, const V& turn) {
-    if ((fixed & 1) == 0) put(bodies[at[0]], x.a, y.a, turn.a);
-    if ((fixed & 2) == 0) put(bodies[at[1]], x.b, y.b, turn.b);
+    const V heldX = heldSpeed(x), heldY = heldSpeed(y);
+    if ((fixed & 1) == 0) put(bodies[at[0]], heldX.a, heldY.a, turn.a);
+    if ((fixed & 2) == 0) put(bodies[at[1]], heldX.b, heldY.b, turn.b);
   }
 
+  /// The spin that an impulse gives, held in size: no other has a product that may not fit.
+  [[gnu::always_inline]] static S spinOf(S spin, S impulse) {
+    if (abs(spin) > S(1 << 8)) [[unlikely]] {
+      const S most = S(1 << 29) / abs(spin);
+      return spin * clamp(impulse, -most, most);
+    }
+    return spin * impulse;
+  }
+  /// What speeds and spins are held at between two contacts, m/s and rad/s.
+  static constexpr S kMostSpeed = S(1 << 22), kMostSpin = S(1 << 14);
+
  private:
+  [[gnu::always_inline]] static V spins(const V& spin, const V& change) {
+    return {spinOf(spin.a, change.a), spinOf(spin.b, change.b)};
+  }
+  [[gnu::always_inline]] static V heldSpeed(const V& v) {
+    return within(v, all(-kMostSpeed), all(kMostSpeed));
+  }
   [[gnu::always_inline]] static void put(Body& body, S x, S y, S turn) {
     body.velocity[0] = x;
     body.velocity[1] = y;
@@ -192,12 +220,14 @@ struct WideScalarLanes {
   }
   static V product(V unit, V x) { return over<Numbers::kUnitBits>(times(unit, x)); }
   static V frictionLimit(const ContactBlock<Numbers>&, V friction, V sum) {
-    return over<Numbers::kFrictionBits>(times(friction, sum));
+    return min(over<Numbers::kFrictionBits>(times(friction, sum)), all(Numbers::kMostLimit));
   }
   static V pushing(V sum, const SoftConstants<Numbers>& constants) {
     return within(sum, zero(), all(constants.mostSum));
   }
-  static V near(V separation, const SoftConstants<Numbers>&) { return separation; }
+  static V near(V separation, const SoftConstants<Numbers>& constants) {
+    return within(separation, all(-constants.mostOverlap), all(constants.mostGap));
+  }
   static V rate(V way, std::int32_t rate) { return WideScalarLanes::rate(way, all(rate)); }
   static V rate(V way, V rate) { return over<Numbers::kRateBits>(times(rate, way)); }
   template <class Axis>
@@ -220,6 +250,8 @@ struct WideScalarLanes {
     return bend.raw() << bits;
   }
   static V checked(V v) { return v; }
+  static V checkedTurn(V v) { return v; }
+  static V checkedSpeed(V v, int) { return within(v, all(-Numbers::kMostSpeed), all(Numbers::kMostSpeed)); }
   static V checkedChange(V v) { return v; }
   static V checkedTotal(V v) { return v; }
   static V checkedWay(V v) { return v; }
@@ -247,9 +279,9 @@ struct WideScalarLanes {
   static void scatterVelocity(Body* bodies, const std::uint32_t* at, int fixed, V x, V y, V turn) {
     if ((fixed & 1) != 0) return;
     std::int64_t* to = bodies[*at].velocity;
-    to[0] = x.raw();
-    to[1] = y.raw();
-    to[2] = turn.raw();
+    to[0] = checkedSpeed(x, 0).raw();
+    to[1] = checkedSpeed(y, 1).raw();
+    to[2] = checkedSpeed(turn, 2).raw();
   }
 
  private:

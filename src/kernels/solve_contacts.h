@@ -65,8 +65,8 @@ template <class L, Pass kPass, class N = typename L::Numbers>
       const V change = lanes.checkedChange(sum - before);
       tangentSpeed = tangentSpeed + change;
       tangentPart = tangentPart + change;
-      velocityA.turn = lanes.checked(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
-      velocityB.turn = lanes.checked(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
+      velocityA.turn = lanes.checkedTurn(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
+      velocityB.turn = lanes.checkedTurn(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
       L::note("soft step: friction limit", limit);
       L::note("soft step: relative speed", speed);
       if constexpr (kPass == Pass::relax) {
@@ -116,8 +116,8 @@ template <class L, Pass kPass, class N = typename L::Numbers>
       const V change = lanes.checkedChange(sum - before);
       normalSpeed = normalSpeed + change;
       normalPart = normalPart + change;
-      velocityA.turn = lanes.checked(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
-      velocityB.turn = lanes.checked(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
+      velocityA.turn = lanes.checkedTurn(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
+      velocityB.turn = lanes.checkedTurn(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
       L::note("soft step: relative speed", speed);
       if constexpr (kPass == Pass::relax) {
         L::store(rest.normalTotal[i] + lane, lanes.checkedTotal(L::load(rest.normalTotal[i] + lane) + sum));
