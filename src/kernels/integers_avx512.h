@@ -45,6 +45,9 @@ struct WideAvx512 : Avx512Vectors {
   [[gnu::always_inline]] static V multiply(V a, V b) {
     return reinterpret_cast<V>(Avx512Vectors::multiply(reinterpret_cast<U>(a), reinterpret_cast<U>(b)));
   }
+  [[gnu::always_inline]] static bool any(V v) {
+    return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(v), reinterpret_cast<__m512i>(v)) != 0;
+  }
   [[gnu::always_inline]] static V mask(int bits) {
     return reinterpret_cast<V>(_mm512_movm_epi64(static_cast<__mmask8>(bits)));
   }
@@ -107,6 +110,9 @@ struct FastAvx512 : EvenAndOdd<Avx512Vectors> {
   using Loose = Avx512Vectors::LooseHalf;
   using Body = SoftBody<FastNumbers>;
 
+  [[gnu::always_inline]] static bool any(V v) {
+    return _mm512_test_epi32_mask(reinterpret_cast<__m512i>(v), reinterpret_cast<__m512i>(v)) != 0;
+  }
   [[gnu::always_inline]] static V greater(V a, V b) { return vector(_mm512_max_epi32(bits(a), bits(b))); }
   [[gnu::always_inline]] static V less(V a, V b) { return vector(_mm512_min_epi32(bits(a), bits(b))); }
   [[gnu::always_inline]] static V mask(int bits) {

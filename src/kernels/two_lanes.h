@@ -123,6 +123,9 @@ class TwoLanes {
   }
   static void note(const char*, const V&) {}
   [[gnu::always_inline]] V checked(const V& v) { return {lanes_.checked(v.a), lanes_.checked(v.b)}; }
+  [[gnu::always_inline]] V checkedTurn(const V& v) {
+    return {lanes_.checkedTurn(v.a), lanes_.checkedTurn(v.b)};
+  }
   [[gnu::always_inline]] V checkedChange(const V& v) {
     return {lanes_.checkedChange(v.a), lanes_.checkedChange(v.b)};
   }
