@@ -4,13 +4,16 @@
 #ifdef __aarch64__
 #include "integers_neon.h"
 #include "soft_passes.h"
+#include "two_lanes.h"
 
 namespace samestep::kernels {
 
 const SoftPasses<FastNumbers>* const fastNeon =
-    &kPassesOf<FastLanes<FastNeon>, CoefficientLanes<FastNeon, FastNumbers>>;
+    &kPassesOf<TwoLanes<FastLanes<FastNeon>>, TwoLanes<CoefficientLanes<FastNeon, FastNumbers>>,
+               FastLanes<FastNeon>>;
 const SoftPasses<WideNumbers>* const wideNeon =
-    &kPassesOf<WideLanes<WideNeon>, CoefficientLanes<FastNeon, WideNumbers>>;
+    &kPassesOf<TwoLanes<WideLanes<WideNeon>>, TwoLanes<CoefficientLanes<FastNeon, WideNumbers>>,
+               WideLanes<WideNeon>>;
 
 }  // namespace samestep::kernels
 #else

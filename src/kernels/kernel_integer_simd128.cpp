@@ -4,13 +4,16 @@
 #ifdef __wasm_simd128__
 #include "integers_simd128.h"
 #include "soft_passes.h"
+#include "two_lanes.h"
 
 namespace samestep::kernels {
 
 const SoftPasses<FastNumbers>* const fastSimd128 =
-    &kPassesOf<FastLanes<FastSimd128>, CoefficientLanes<FastSimd128, FastNumbers>>;
+    &kPassesOf<TwoLanes<FastLanes<FastSimd128>>, TwoLanes<CoefficientLanes<FastSimd128, FastNumbers>>,
+               FastLanes<FastSimd128>>;
 const SoftPasses<WideNumbers>* const wideSimd128 =
-    &kPassesOf<WideLanes<WideSimd128>, CoefficientLanes<FastSimd128, WideNumbers>>;
+    &kPassesOf<TwoLanes<WideLanes<WideSimd128>>, TwoLanes<CoefficientLanes<FastSimd128, WideNumbers>>,
+               WideLanes<WideSimd128>>;
 
 }  // namespace samestep::kernels
 #else

@@ -5,13 +5,16 @@
 #ifdef __SSE4_2__
 #include "integers_sse42.h"
 #include "soft_passes.h"
+#include "two_lanes.h"
 
 namespace samestep::kernels {
 
 const SoftPasses<FastNumbers>* const fastSse42 =
-    &kPassesOf<FastLanes<FastSse42>, CoefficientLanes<FastSse42, FastNumbers>>;
+    &kPassesOf<TwoLanes<FastLanes<FastSse42>>, TwoLanes<CoefficientLanes<FastSse42, FastNumbers>>,
+               FastLanes<FastSse42>>;
 const SoftPasses<WideNumbers>* const wideSse42 =
-    &kPassesOf<WideLanes<WideSse42>, CoefficientLanes<FastSse42, WideNumbers>>;
+    &kPassesOf<TwoLanes<WideLanes<WideSse42>>, TwoLanes<CoefficientLanes<FastSse42, WideNumbers>>,
+               WideLanes<WideSse42>>;
 
 }  // namespace samestep::kernels
 #else
