@@ -118,6 +118,36 @@ void tryVertices(const Vector<S>* points, int count, const Vector<S>* others, in
   }
 }
 
+/// Whether vertices go round counter-clockwise, once, without a dent.
+bool isConvex(const Vector<Fixed>* points, int count) {
+  for (int i = 1; i < count; ++i) {
+    const Vector<Fixed>&from = points[i - 1], &to = points[i];
+    if (crossOf(to - from, points[i + 1 < count ? i + 1 : 0] - to) < 0) return false;
+    if (crossOf(from - points[0], to - points[0]) < 0) return false;
+  }
+  return true;
+}
+
+/// Puts the corners of the hull of some points first, counter-clockwise. @return how many
+int makeConvex(Vector<Fixed>* points, int count) {
+  std::sort(points, points + count, [](const Vector<Fixed>& a, const Vector<Fixed>& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;  // total order: equal points are the same.
+  });
+  Vector<Fixed> chain[2 * kMaxPolyVertices];
+  int kept = 0;
+  const auto add = [&](const Vector<Fixed>& p, int least) {
+    while (kept >= least + 2 && crossOf(chain[kept - 1] - chain[kept - 2], p - chain[kept - 1]) <= 0) --kept;
+    chain[kept++] = p;
+  };
+  for (int i = 0; i < count; ++i) add(points[i], 0);
+  const int lower = kept - 1;
+  for (int i = count - 2; i >= 0; --i) add(points[i], lower);
+  // The first point closes the chain; points that are all one do not turn it.
+  while (kept > 1 && chain[kept - 1] == chain[0]) --kept;
+  std::copy(chain, chain + kept, points);
+  return kept;
+}
+
 }  // namespace
 
 template <Scalar S>
@@ -139,6 +169,11 @@ Cores<S>::Cores(const PlacedShape<S>& first, const PlacedShape<S>& second) {
     eachEdge(points, count, [&](const Vector<S>& from, const Vector<S>& to) {
       shortest = std::min(shortest, lengthOf(to - from));
     });
+  }
+  if constexpr (std::is_same_v<S, Fixed>) {
+    // Rounding may turn a thin polygon inside out; collide sees its vertices.
+    if (countA > 2 && !isConvex(a, countA)) countA = makeConvex(a, countA);
+    if (countB > 2 && !isConvex(b, countB)) countB = makeConvex(b, countB);
   }
   size *= 2;
   reach = size + std::fabs(static_cast<double>(origin.x)) + std::fabs(static_cast<double>(origin.y));

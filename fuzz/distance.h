@@ -5,7 +5,8 @@
 
 namespace samestep::fuzz {
 
-/// The vertices of two placed shapes relative to A's first: differences, as collide takes them.
+/// The vertices of two placed shapes relative to A's first: differences, as collide takes them. In Fixed, of a
+/// polygon that rounding has turned inside out, or put a dent in, the hull.
 template <Scalar S>
 struct Cores {
   int countA = 0, countB = 0;
