@@ -172,8 +172,11 @@ Cores<S>::Cores(const PlacedShape<S>& first, const PlacedShape<S>& second) {
   }
   if constexpr (std::is_same_v<S, Fixed>) {
     // Rounding may turn a thin polygon inside out; collide sees its vertices.
-    if (countA > 2 && !isConvex(a, countA)) countA = makeConvex(a, countA);
-    if (countB > 2 && !isConvex(b, countB)) countB = makeConvex(b, countB);
+    for (auto [points, count] : {std::pair(a, &countA), std::pair(b, &countB)}) {
+      if (*count <= 2 || isConvex(points, *count)) continue;
+      *count = makeConvex(points, *count);
+      dented = true;
+    }
   }
   size *= 2;
   reach = size + std::fabs(static_cast<double>(origin.x)) + std::fabs(static_cast<double>(origin.y));
@@ -186,6 +189,8 @@ BruteAnswer bruteDistance(const Cores<S>& cores, double limit) {
   faces.tryAll(cores.a, cores.countA, cores.b, cores.countB);
   faces.tryAll(cores.b, cores.countB, cores.a, cores.countA);
   answer.distance = answer.bestFace;
+  // A dent leaves faces in line of which the hull knows only one.
+  if (cores.dented) answer.lead = 0;
   // Without area between them, the cores may be apart along a line that no face is across.
   const bool flat = cores.countA <= 2 && cores.countB <= 2;
   const bool noFaces = answer.bestFace == -1e300;
