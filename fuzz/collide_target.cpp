@@ -144,6 +144,8 @@ double width(const Cores<S>& cores, const CollisionInfo<S>& info) {
                   widthTowards(cores.b, cores.countB, -info.normal));
 }
 constexpr double kNeedle = 0x1p-10;
+/// Ends of edges that lie opposite each other to this, in metres across the normal, count as meeting.
+constexpr double kMeet = 16 * 0x1p-32;
 
 /// What holds for every answer, whatever the features are.
 template <Scalar S>
@@ -227,7 +229,7 @@ bool endsMeet(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b, const Co
   for (int i = 0; i < info.count; ++i) {
     const std::uint32_t hash = info.points[i].hash;
     const Vector<Fixed> apart = b.planes[hash & 0xffff].v0 - a.planes[hash >> 16].v0;
-    if (std::fabs(static_cast<double>(cross(apart, info.normal))) <= 16 * 0x1p-32) return true;
+    if (std::fabs(static_cast<double>(cross(apart, info.normal))) <= kMeet) return true;
   }
   return false;
 }
@@ -387,14 +389,15 @@ void checkExchanged(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b,
   const CollisionInfo<Fixed> other = withoutMarginal(exchanged(turned, a.type != b.type), bounds.place);
   // Apart, the face's own normal and that of the nearest features differ by their rounding.
   const double turnedBy = brute.distance < 0 ? 0 : 0x1p-29;
+  // From one end to the other it is farther along an edge that is not quite across the normal.
+  const double between = (bounds.place + kMeet) / width(cores, found);
   expect(back.count == info.count, "exchanging the shapes keeps the count");
   expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
                    std::fabs(static_cast<double>(back.normal.y - info.normal.y)),
                info.count == 0 ? 1e300 : turnedBy, "exchanging the shapes turns the normal round");
   expect(brute.distance >= 0 || isDust(cores) || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
              sameTouch(back, info, false) || sameTouch(other, info, false) ||
-             (endsMeet(a, b, info) &&
-              (nearTouch(back, info, bounds.place) || nearTouch(other, info, bounds.place))),
+             (endsMeet(a, b, info) && (nearTouch(back, info, between) || nearTouch(other, info, between))),
          "exchanging the shapes exchanges the points");
 }
 
