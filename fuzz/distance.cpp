@@ -118,14 +118,17 @@ void tryVertices(const Vector<S>* points, int count, const Vector<S>* others, in
   }
 }
 
-/// Whether vertices go round counter-clockwise, once, without a dent.
+/// Whether vertices go round an area counter-clockwise, once, without a dent.
 bool isConvex(const Vector<Fixed>* points, int count) {
+  bool area = false;
   for (int i = 1; i < count; ++i) {
     const Vector<Fixed>&from = points[i - 1], &to = points[i];
     if (crossOf(to - from, points[i + 1 < count ? i + 1 : 0] - to) < 0) return false;
-    if (crossOf(from - points[0], to - points[0]) < 0) return false;
+    const Int128 fan = crossOf(from - points[0], to - points[0]);
+    if (fan < 0) return false;
+    area = area || fan > 0;
   }
-  return true;
+  return area;
 }
 
 /// Puts the corners of the hull of some points first, counter-clockwise. @return how many
