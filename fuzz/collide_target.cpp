@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <type_traits>
 
 #include <samestep/limits.h>
 
@@ -294,10 +293,6 @@ struct Scene {
     if (!shapeA) return false;
     shapeB = current.same ? shapeA : build<S>(current.shapeB);
     if (!shapeB) return false;
-    if constexpr (std::is_same_v<S, Fixed>) {
-      resolve(current.shapeA, *shapeA);
-      resolve(current.shapeB, *shapeB);
-    }
     for (Placed<S>* placed : {&a, &otherA}) placed->prepare(*shapeA);
     for (Placed<S>* placed : {&b, &otherB}) placed->prepare(*shapeB);
     return true;
@@ -405,8 +400,10 @@ void run(Input& input, std::uint64_t choice) {
   const std::uint64_t head = input.word();
   current = {};
   current.shapeA = readShape(input);
+  resolve(current.shapeA);
   current.same = (head & 1) != 0;
   current.shapeB = current.same ? current.shapeA : readShape(input);
+  resolve(current.shapeB);
   current.poseA = readPose(input, nullptr);
   current.poseB = readPose(input, &current.poseA);
   constexpr Fixed kMargins[] = {Fixed(0), Fixed(0), Fixed::ratio(1, 50), Fixed(1)};

@@ -131,7 +131,8 @@ bool isConvex(const Vector<Fixed>* points, int count) {
   return area;
 }
 
-/// Puts the corners of the hull of some points first, counter-clockwise. @return how many
+}  // namespace
+
 int makeConvex(Vector<Fixed>* points, int count) {
   std::sort(points, points + count, [](const Vector<Fixed>& a, const Vector<Fixed>& b) {
     return a.x != b.x ? a.x < b.x : a.y < b.y;  // total order: equal points are the same.
@@ -150,8 +151,6 @@ int makeConvex(Vector<Fixed>* points, int count) {
   std::copy(chain, chain + kept, points);
   return kept;
 }
-
-}  // namespace
 
 template <Scalar S>
 Cores<S>::Cores(const PlacedShape<S>& first, const PlacedShape<S>& second) {

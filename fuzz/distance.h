@@ -5,6 +5,11 @@
 
 namespace samestep::fuzz {
 
+/// Puts the corners of the hull of some points first, counter-clockwise: exact, and without what the library
+/// does for it. @return how many there are
+/// @pre count <= kMaxPolyVertices + 1
+int makeConvex(Vector<Fixed>* points, int count);
+
 /// The vertices of two placed shapes relative to A's first: differences, as collide takes them. In Fixed, of
 /// a polygon that rounding has turned inside out, or put a dent in, the hull.
 template <Scalar S>
