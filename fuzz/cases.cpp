@@ -9,6 +9,7 @@
 #include <samestep/poly_shape.h>
 #include <samestep/segment_shape.h>
 
+#include "distance.h"
 #include "support/degenerate_shapes.h"
 
 namespace samestep::fuzz {
@@ -149,12 +150,10 @@ std::optional<Shape<S>> build(const ShapePlan& plan) {
   return std::nullopt;
 }
 
-void resolve(ShapePlan& plan, const Shape<Fixed>& shape) {
+void resolve(ShapePlan& plan) {
   if (plan.make != ShapePlan::Make::hull) return;
-  const std::span<const Vector<Fixed>> vertices = shape.vertices();
   plan.make = ShapePlan::Make::raw;
-  plan.count = static_cast<int>(vertices.size());
-  std::copy(vertices.begin(), vertices.end(), plan.points);
+  plan.count = makeConvex(plan.points, plan.count);
 }
 
 template std::optional<Shape<double>> build<double>(const ShapePlan&);

@@ -52,9 +52,9 @@ Vector<S> as(const Vector<Fixed>& v) {
 template <Scalar S>
 std::optional<Shape<S>> build(const ShapePlan& plan);
 
-/// Makes a plan of a hull one of the vertices that the hull was found to have: to be built in another scalar
-/// without searching again. What searching makes of points is the business of the target `hull`.
-void resolve(ShapePlan& plan, const Shape<Fixed>& shape);
+/// Makes a plan of a hull one of the vertices that the hull has. What the library's search makes of points is
+/// the business of the target `hull`.
+void resolve(ShapePlan& plan);
 
 template <Scalar S>
 Vector<S> rotationOf(const PosePlan& pose) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <type_traits>
 
 #include <samestep/limits.h>
 
@@ -144,6 +143,8 @@ double width(const Cores<S>& cores, const CollisionInfo<S>& info) {
                   widthTowards(cores.b, cores.countB, -info.normal));
 }
 constexpr double kNeedle = 0x1p-10;
+/// Ends of edges that lie opposite each other to this, in metres across the normal, count as meeting.
+constexpr double kMeet = 16 * 0x1p-32;
 
 /// What holds for every answer, whatever the features are.
 template <Scalar S>
@@ -227,7 +228,7 @@ bool endsMeet(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b, const Co
   for (int i = 0; i < info.count; ++i) {
     const std::uint32_t hash = info.points[i].hash;
     const Vector<Fixed> apart = b.planes[hash & 0xffff].v0 - a.planes[hash >> 16].v0;
-    if (std::fabs(static_cast<double>(cross(apart, info.normal))) <= 16 * 0x1p-32) return true;
+    if (std::fabs(static_cast<double>(cross(apart, info.normal))) <= kMeet) return true;
   }
   return false;
 }
@@ -292,10 +293,6 @@ struct Scene {
     if (!shapeA) return false;
     shapeB = current.same ? shapeA : build<S>(current.shapeB);
     if (!shapeB) return false;
-    if constexpr (std::is_same_v<S, Fixed>) {
-      resolve(current.shapeA, *shapeA);
-      resolve(current.shapeB, *shapeB);
-    }
     for (Placed<S>* placed : {&a, &otherA}) placed->prepare(*shapeA);
     for (Placed<S>* placed : {&b, &otherB}) placed->prepare(*shapeB);
     return true;
@@ -387,14 +384,15 @@ void checkExchanged(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b,
   const CollisionInfo<Fixed> other = withoutMarginal(exchanged(turned, a.type != b.type), bounds.place);
   // Apart, the face's own normal and that of the nearest features differ by their rounding.
   const double turnedBy = brute.distance < 0 ? 0 : 0x1p-29;
+  // From one end to the other it is farther along an edge that is not quite across the normal.
+  const double between = (bounds.place + kMeet) / width(cores, found);
   expect(back.count == info.count, "exchanging the shapes keeps the count");
   expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
                    std::fabs(static_cast<double>(back.normal.y - info.normal.y)),
                info.count == 0 ? 1e300 : turnedBy, "exchanging the shapes turns the normal round");
   expect(brute.distance >= 0 || isDust(cores) || hasNoSide(a, info.normal) || hasNoSide(b, info.normal) ||
              sameTouch(back, info, false) || sameTouch(other, info, false) ||
-             (endsMeet(a, b, info) &&
-              (nearTouch(back, info, bounds.place) || nearTouch(other, info, bounds.place))),
+             (endsMeet(a, b, info) && (nearTouch(back, info, between) || nearTouch(other, info, between))),
          "exchanging the shapes exchanges the points");
 }
 
@@ -402,8 +400,10 @@ void run(Input& input, std::uint64_t choice) {
   const std::uint64_t head = input.word();
   current = {};
   current.shapeA = readShape(input);
+  resolve(current.shapeA);
   current.same = (head & 1) != 0;
   current.shapeB = current.same ? current.shapeA : readShape(input);
+  resolve(current.shapeB);
   current.poseA = readPose(input, nullptr);
   current.poseB = readPose(input, &current.poseA);
   constexpr Fixed kMargins[] = {Fixed(0), Fixed(0), Fixed::ratio(1, 50), Fixed(1)};

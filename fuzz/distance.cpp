@@ -118,7 +118,39 @@ void tryVertices(const Vector<S>* points, int count, const Vector<S>* others, in
   }
 }
 
+/// Whether vertices go round an area counter-clockwise, once, without a dent.
+bool isConvex(const Vector<Fixed>* points, int count) {
+  bool area = false;
+  for (int i = 1; i < count; ++i) {
+    const Vector<Fixed>&from = points[i - 1], &to = points[i];
+    if (crossOf(to - from, points[i + 1 < count ? i + 1 : 0] - to) < 0) return false;
+    const Int128 fan = crossOf(from - points[0], to - points[0]);
+    if (fan < 0) return false;
+    area = area || fan > 0;
+  }
+  return area;
+}
+
 }  // namespace
+
+int makeConvex(Vector<Fixed>* points, int count) {
+  std::sort(points, points + count, [](const Vector<Fixed>& a, const Vector<Fixed>& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;  // total order: equal points are the same.
+  });
+  Vector<Fixed> chain[2 * kMaxPolyVertices];
+  int kept = 0;
+  const auto add = [&](const Vector<Fixed>& p, int least) {
+    while (kept >= least + 2 && crossOf(chain[kept - 1] - chain[kept - 2], p - chain[kept - 1]) <= 0) --kept;
+    chain[kept++] = p;
+  };
+  for (int i = 0; i < count; ++i) add(points[i], 0);
+  const int lower = kept - 1;
+  for (int i = count - 2; i >= 0; --i) add(points[i], lower);
+  // The first point closes the chain; points that are all one do not turn it.
+  while (kept > 1 && chain[kept - 1] == chain[0]) --kept;
+  std::copy(chain, chain + kept, points);
+  return kept;
+}
 
 template <Scalar S>
 Cores<S>::Cores(const PlacedShape<S>& first, const PlacedShape<S>& second) {
@@ -140,6 +172,14 @@ Cores<S>::Cores(const PlacedShape<S>& first, const PlacedShape<S>& second) {
       shortest = std::min(shortest, lengthOf(to - from));
     });
   }
+  if constexpr (std::is_same_v<S, Fixed>) {
+    // Rounding may turn a thin polygon inside out; collide sees its vertices.
+    for (auto [points, count] : {std::pair(a, &countA), std::pair(b, &countB)}) {
+      if (*count <= 2 || isConvex(points, *count)) continue;
+      *count = makeConvex(points, *count);
+      dented = true;
+    }
+  }
   size *= 2;
   reach = size + std::fabs(static_cast<double>(origin.x)) + std::fabs(static_cast<double>(origin.y));
 }
@@ -151,6 +191,8 @@ BruteAnswer bruteDistance(const Cores<S>& cores, double limit) {
   faces.tryAll(cores.a, cores.countA, cores.b, cores.countB);
   faces.tryAll(cores.b, cores.countB, cores.a, cores.countA);
   answer.distance = answer.bestFace;
+  // A dent leaves faces in line of which the hull knows only one.
+  if (cores.dented) answer.lead = 0;
   // Without area between them, the cores may be apart along a line that no face is across.
   const bool flat = cores.countA <= 2 && cores.countB <= 2;
   const bool noFaces = answer.bestFace == -1e300;

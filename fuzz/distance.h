@@ -5,7 +5,13 @@
 
 namespace samestep::fuzz {
 
-/// The vertices of two placed shapes relative to A's first: differences, as collide takes them.
+/// Puts the corners of the hull of some points first, counter-clockwise: exact, and without what the library
+/// does for it. @return how many there are
+/// @pre count <= kMaxPolyVertices + 1
+int makeConvex(Vector<Fixed>* points, int count);
+
+/// The vertices of two placed shapes relative to A's first: differences, as collide takes them. In Fixed, of
+/// a polygon that rounding has turned inside out, or put a dent in, the hull.
 template <Scalar S>
 struct Cores {
   int countA = 0, countB = 0;
@@ -13,6 +19,7 @@ struct Cores {
   Vector<S> origin;  ///< A's first vertex in the world.
   double size = 0;   ///< Of both cores and the way between them, m: what an error of a direction is worth.
   double shortest = 1e300;        ///< Edge of either core, m.
+  bool dented = false;            ///< Whether a core is the hull of a polygon that is none itself.
   double reach = 0;               ///< Of the farthest vertex from the world's origin, m.
   mutable double narrowest = -1;  ///< What leastWidth found; negative: not asked yet.
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "cases.h"
 #include "check.h"
@@ -76,10 +75,6 @@ struct Search {
     if (!shapeA) return false;
     const auto shapeB = current.same ? shapeA : build<S>(current.shapeB);
     if (!shapeB) return false;
-    if constexpr (std::is_same_v<S, Fixed>) {
-      resolve(current.shapeA, *shapeA);
-      resolve(current.shapeB, *shapeB);
-    }
     a.prepare(*shapeA);
     b.prepare(*shapeB);
     return true;
@@ -129,8 +124,10 @@ void run(Input& input, std::uint64_t choice) {
   const std::uint64_t head = input.word();
   current = {};
   current.shapeA = readShape(input);
+  resolve(current.shapeA);
   current.same = (head & 1) != 0;
   current.shapeB = current.same ? current.shapeA : readShape(input);
+  resolve(current.shapeB);
   current.poseA = readPose(input, nullptr);
   current.poseB = readPose(input, &current.poseA);
   current.start = static_cast<std::uint32_t>(head >> 32);

@@ -50,12 +50,13 @@ struct Model {
 template <Scalar S>
 class World {
  public:
-  explicit World(Input input) : input_(input) { connect(space_); }
+  /// @param checks  whether to look at everything after each operation, or at the hashes alone
+  World(Input input, bool checks) : input_(input), checks_(checks) { connect(space_); }
 
   /// Runs the whole input. @return the hash after each operation
   const std::vector<std::uint64_t>& run() {
+    std::uint64_t before = space_.hash();
     for (int i = 0; i < kMostOperations && !input_.atEnd(); ++i) {
-      const std::uint64_t before = space_.hash();
       try {
         operate(input_.word());
       } catch (const Error&) {
@@ -64,9 +65,11 @@ class World {
       }
       for (const std::uint64_t key : removedByCallbacks_) model_.forget(bodyOfKey(key));
       removedByCallbacks_.clear();
-      check();
-      hashes_.push_back(space_.hash());
+      if (checks_) check();
+      before = space_.hash();
+      hashes_.push_back(before);
     }
+    check();
     continueTwice();
     return hashes_;
   }
@@ -474,8 +477,8 @@ class World {
     S dt = ratio<S>(1, kTimes[byteOf(op, 1) % 4]);
     if (byteOf(op, 2) == 255) dt = number(Fixed(0), Fixed(1));
     for (int i = 0; i < 1 + byteOf(op, 3) % 4 && steps_ < kMostSteps; ++i, ++steps_) {
+      if (i > 0) hashes_.push_back(space_.hash());
       space_.step(dt);
-      hashes_.push_back(space_.hash());
     }
   }
 
@@ -540,6 +543,7 @@ class World {
   }
 
   Input input_;
+  bool checks_;
   Space<S> space_;
   Model model_;
   Kept kept_[2];
@@ -549,8 +553,8 @@ class World {
 };
 
 template <Scalar S>
-std::vector<std::uint64_t> hashesOf(const Input& input) {
-  World<S> world(input);
+std::vector<std::uint64_t> hashesOf(const Input& input, bool checks) {
+  World<S> world(input, checks);
   return world.run();
 }
 
@@ -562,12 +566,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace samestep::fuzz;
   Input input(data, size);
   const std::uint64_t head = input.word();
+  // What has the same hashes need not be looked at twice: one in eight is.
+  const bool twice = (mixed(data, size) & 7) == 0;
   guarded([&] {
     if ((head & 1) == 0) {
       // The checked numbers report every overflow; besides that they are the same.
-      expect(hashesOf<CheckedFixed>(input) == hashesOf<Fixed>(input), "Fixed does what CheckedFixed does");
+      expect(hashesOf<CheckedFixed>(input, true) == hashesOf<Fixed>(input, twice),
+             "Fixed does what CheckedFixed does");
     } else {
-      expect(hashesOf<double>(input) == hashesOf<double>(input), "the same again gives the same hashes");
+      expect(hashesOf<double>(input, true) == hashesOf<double>(input, twice),
+             "the same again gives the same hashes");
     }
   });
   return 0;

@@ -33,7 +33,8 @@ bool outsideOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point
 /// The nearest point of a convex core lies on the edge whose line is farthest below the point, since of all
 /// unit normals around a corner one of its two edges is the closest to any direction between them. Which part
 /// of that edge is nearest is decided exactly. A point inside a polygon has no nearest vertex: above or below
-/// the inside of an edge the sign of the distance may be rounded, before a thin corner it may not.
+/// the inside of an edge the sign of the distance may be rounded, before a blunt corner it may not. What lies
+/// beyond both edges of a sharp corner is outside of it, even where rounding has turned a sliver inside out.
 template <Scalar S>
 NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) {
   const Plane<S>* planes = shape.planes;
@@ -67,6 +68,7 @@ NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) 
     // nearest only if both say so.
     if (shape.type == ShapeType::segment || partOfEdge(shape, beyond, point) == -part) {
       const bool outside = shape.type == ShapeType::segment || found.distance > noise ||
+                           dot(planes[found.edge].n, planes[beyond].n) < S(0) ||
                            outsideOfEdge(shape, found.edge, point) || outsideOfEdge(shape, beyond, point);
       if (outside) found.vertex = part < 0 ? previous : found.edge;
       return found;

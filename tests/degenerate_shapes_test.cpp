@@ -86,6 +86,21 @@ TYPED_TEST(DegenerateShapesTest, CircleFarBeforeTheTipOfABladeDoesNotTouchIt) {
   }
 }
 
+// Turned by some units, its edges are in line and its normals are not: all say that the centre is inside.
+TYPED_TEST(DegenerateShapesTest, CircleRoundTheTipOfASliverTurnedInsideOutIsPushedOffTheTip) {
+  using S = TypeParam;
+  const Shape<S> sliver = TestFixture::hull({{32, 32}, {2611340116437, -1}, {78, 32}});
+  const Shape<S> circle = circleShape<S>(BodyId(), S(14958));
+  const Transform<S> turned =
+      Transform<S>::rigid(fromUnits<S>(RawPoint{16, 16}), fromUnits<S>(std::int64_t{78}));
+  const Transform<S> before = Transform<S>::translation(fromUnits<S>(RawPoint{-1786706394652, 15}));
+  const CollisionInfo<S> info = TestFixture::touch(sliver, turned, circle, before);
+  ASSERT_EQ(info.count, 1);
+  EXPECT_NEAR(static_cast<double>(info.normal.x), -1, 1e-9);
+  EXPECT_NEAR(static_cast<double>(dot(info.points[0].pointB - info.points[0].pointA, info.normal)),
+              416 - 14958, 1e-5);
+}
+
 TYPED_TEST(DegenerateShapesTest, BladesFarBeforeEachOthersTipsDoNotTouch) {
   using S = TypeParam;
   const Shape<S> blade = makeNasty<S>(nastyShapes()[static_cast<std::size_t>(findNastyShape("blade"))]);
