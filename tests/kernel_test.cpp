@@ -3,6 +3,7 @@
 #include <samestep/kernel.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -51,7 +52,7 @@ TEST(KernelTest, TheNextBestIsAvailableAndNoLater) {
   }
 }
 
-constexpr std::uint32_t kBodies = 40;
+constexpr std::uint32_t kBodies = 64;
 constexpr std::uint32_t kBlocks = 9;
 
 /// Blocks, the bodies they are about, and what a kernel made of them.
@@ -62,12 +63,21 @@ struct Work {
   std::vector<SoftMarks> marks{kBodies};
   std::vector<ContactBlock<N>> blocks{kBlocks};
   std::vector<BlockRest<N>> rests{kBlocks};
+  std::vector<BlockInput<N>> inputs{kBlocks};
   SoftConstants<N> constants{};
 
+  /// @return not 0 where a number left the kernel's range
+  std::uint64_t prepare(const SoftPasses<N>& passes) {
+    std::uint64_t left = 0;
+    for (std::uint32_t i = 0; i < kBlocks; ++i) left |= passes.prepare(inputs[i], blocks[i], bodies.data());
+    return left;
+  }
   std::uint64_t run(const SoftPasses<N>& passes) {
     std::uint64_t left = 0;
     for (int i = 0; i < 3; ++i) {
+      const ContactPass<N> springs = i == 0 ? passes.start : passes.solve;
       left |= passes.drive(bodies.data(), drives.data(), marks.data(), kBodies, constants);
+      left |= springs(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
       left |= passes.solve(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
       left |= passes.move(bodies.data(), drives.data(), marks.data(), kBodies, constants);
       left |= passes.relax(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
@@ -85,7 +95,13 @@ struct DoubleSource {
     return most * (static_cast<double>(random.next() >> 11) / 4503599627370496.0 - 1.0);
   }
   double unit() { return number(1); }
+  double moment() { return 16 * part(); }
+  double present() { return 1; }
   double part() { return (number(1) + 1) / 2; }
+  std::pair<double, double> direction() {
+    const double x = unit();
+    return {x, (random.oneIn(2) ? 1 : -1) * std::sqrt(1 - x * x)};
+  }
   double friction() { return 2 * part(); }
   double speed() { return number(16); }
   double way() { return number(0.25); }
@@ -116,11 +132,29 @@ struct IntegerSource {
   static constexpr bool kWide = std::same_as<N, WideNumbers>;
   /// Of speeds, ways and impulses.
   int bits = 20;
+  int momentBits = 3;
   Speed upTo(int most) { return static_cast<Speed>(wide(std::min(bits, most))); }
   std::int64_t wide(int width) { return static_cast<std::int64_t>(random.next()) >> (63 - width); }
   std::int32_t number(int width) { return static_cast<std::int32_t>(wide(width)); }
   std::int32_t unit() { return number(N::kUnitBits); }
+  /// Up to 2^momentBits.
+  std::int32_t moment() {
+    const int width = N::kSpinBits + momentBits;
+    return number(width) & static_cast<std::int32_t>((std::uint32_t{1} << width) - 1);
+  }
+  std::int32_t present() { return -1; }
   std::int32_t part() { return number(N::kUnitBits) & ((1 << N::kUnitBits) - 1); }
+  std::pair<std::int32_t, std::int32_t> direction() {
+    const std::int64_t x = random.oneIn(8) ? std::int64_t{1} << N::kUnitBits : unit();
+    // The whole root, so that every machine tries the same.
+    const std::uint64_t square = (std::uint64_t{1} << 2 * N::kUnitBits) - static_cast<std::uint64_t>(x * x);
+    std::uint64_t root = 0;
+    for (std::uint64_t bit = std::uint64_t{1} << N::kUnitBits; bit != 0; bit >>= 1) {
+      if ((root + bit) * (root + bit) <= square) root += bit;
+    }
+    const auto y = static_cast<std::int32_t>(root);
+    return {static_cast<std::int32_t>(x), random.oneIn(2) ? y : -y};
+  }
   std::int32_t friction() {
     const int width = kWide ? 31 : N::kFrictionBits;
     return number(width) & static_cast<std::int32_t>((std::int64_t{1} << width) - 1);
@@ -167,6 +201,27 @@ struct IntegerSource {
 using FastSource = IntegerSource<FastNumbers>;
 using WideSource = IntegerSource<WideNumbers>;
 
+/// What a lane is prepared from: rotations and a normal, which are of length 1 at most, as arms are.
+template <class Source, class N = typename Source::Numbers>
+void fillInput(Source& from, BlockInput<N>& input, int lane, int points) {
+  const auto direction = [&](auto& x, auto& y) {
+    const auto [cosine, sine] = from.direction();
+    x[lane] = cosine;
+    y[lane] = sine;
+  };
+  direction(input.cosA, input.sinA);
+  direction(input.cosB, input.sinB);
+  direction(input.normalX, input.normalY);
+  input.momentA[lane] = from.moment();
+  input.momentB[lane] = from.moment();
+  for (int k = 0; k < points; ++k) {
+    auto& point = input.point[k];
+    direction(point.armAX, point.armAY);
+    direction(point.armBX, point.armBY);
+    point.present[lane] = from.present();
+  }
+}
+
 template <class Source, class N = typename Source::Numbers>
 Work<N> randomWork(Source& from) {
   Work<N> work;
@@ -196,9 +251,9 @@ Work<N> randomWork(Source& from) {
     const int used = random.between(1, N::kLanes);
     std::uint32_t next = 1 + random.below(20);
     for (int lane = 0; lane < N::kLanes; ++lane) {
-      const auto bit = static_cast<std::uint8_t>(1 << lane);
-      const auto mark = [&](std::uint8_t& bits, bool set) {
-        if (set) bits = static_cast<std::uint8_t>(bits | bit);
+      const auto bit = static_cast<std::uint16_t>(1 << lane);
+      const auto mark = [&](std::uint16_t& bits, bool set) {
+        if (set) bits = static_cast<std::uint16_t>(bits | bit);
       };
       const bool standsA = random.oneIn(4), standsB = !standsA && random.oneIn(4);
       mark(block.fixedA, lane >= used || standsA);
@@ -237,6 +292,7 @@ Work<N> randomWork(Source& from) {
         point.tangent.sum[lane] = from.sum();
         point.separation[lane] = from.separation();
       }
+      fillInput(from, work.inputs[i], lane, block.count[lane]);
     }
   }
   return work;
@@ -255,6 +311,7 @@ NamedPasses<WideNumbers> wideKernels() {
   NamedPasses<WideNumbers> all;
   if (isAvailable(KernelTarget::sse42)) all.emplace_back("sse42", kernels::wideSse42);
   if (isAvailable(KernelTarget::avx2)) all.emplace_back("avx2", kernels::wideAvx2);
+  if (isAvailable(KernelTarget::avx512)) all.emplace_back("avx512", kernels::wideAvx512);
   if (isAvailable(KernelTarget::neon)) all.emplace_back("neon", kernels::wideNeon);
   if (isAvailable(KernelTarget::simd128)) all.emplace_back("simd128", kernels::wideSimd128);
   return all;
@@ -264,15 +321,62 @@ NamedPasses<FastNumbers> fastKernels() {
   NamedPasses<FastNumbers> all;
   if (isAvailable(KernelTarget::sse42)) all.emplace_back("sse42", kernels::fastSse42);
   if (isAvailable(KernelTarget::avx2)) all.emplace_back("avx2", kernels::fastAvx2);
+  if (isAvailable(KernelTarget::avx512)) all.emplace_back("avx512", kernels::fastAvx512);
   if (isAvailable(KernelTarget::neon)) all.emplace_back("neon", kernels::fastNeon);
   if (isAvailable(KernelTarget::simd128)) all.emplace_back("simd128", kernels::fastSimd128);
   return all;
 }
 
+/// Fails unless kernels prepare the blocks to the same bits, and say alike whether a number left the range.
+/// @return whether one did
+template <class N>
+bool expectPreparedAlike(const Work<N>& start, const SoftPasses<N>& portable, const NamedPasses<N>& kernels,
+                         std::uint64_t seed) {
+  Work<N> expected = start;
+  const bool left = expected.prepare(portable) != 0;
+  EXPECT_FALSE(sameBytes(expected.blocks, start.blocks)) << "seed " << seed;
+  EXPECT_FALSE(sameBytes(expected.bodies, start.bodies)) << "seed " << seed;
+  for (const auto& [name, passes] : kernels) {
+    Work<N> work = start;
+    EXPECT_EQ(work.prepare(*passes) != 0, left) << name << ", seed " << seed;
+    if (left) continue;
+    EXPECT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
+    EXPECT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+  }
+  return left;
+}
+
+TEST(FastKernelTest, EveryKernelPreparesTheSameBitsAndFindsTheSameNumbersOutOfRange) {
+  int within = 0, beyond = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    FastSource source{Random(seed)};
+    source.bits = source.random.between(8, 28);
+    source.momentBits = source.random.between(0, 5);
+    ++(expectPreparedAlike(randomWork(source), kernels::fastBy1, fastKernels(), seed) ? beyond : within);
+  }
+  // Both sides of the limit have been tried.
+  EXPECT_GT(within, 300);
+  EXPECT_GT(beyond, 300);
+}
+
+TEST(WideKernelTest, EveryKernelPreparesTheBitsOfCheckedNumbers) {
+  using Coefficients = CoefficientLanes<OneAtATime, WideNumbers>;
+  const SoftPasses<WideNumbers> plain = kPassesOf<WideScalarLanes<Fixed>, Coefficients>;
+  const SoftPasses<WideNumbers> checked = kPassesOf<WideScalarLanes<CheckedFixed>, Coefficients>;
+  NamedPasses<WideNumbers> all = wideKernels();
+  all.emplace_back("portable", &plain);
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    WideSource source{Random(seed)};
+    source.bits = source.random.between(8, 48);
+    source.momentBits = source.random.between(0, 5);
+    EXPECT_FALSE(expectPreparedAlike(randomWork(source), checked, all, seed));
+  }
+}
+
 TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange) {
   int within = 0, beyond = 0;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    FastSource source{Random(seed), 0};
+    FastSource source{Random(seed)};
     source.bits = source.random.between(8, 30);
     const Work<FastNumbers> start = randomWork(source);
     Work<FastNumbers> expected = start;
@@ -296,12 +400,11 @@ TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange
 }
 
 TEST(WideKernelTest, EveryKernelGivesTheBitsOfCheckedNumbersWhichReportNothing) {
-  const SoftPasses<WideNumbers> plain =
-      kPassesOf<WideScalarLanes<Fixed>, CoefficientLanes<OneAtATime, WideNumbers>>;
-  const SoftPasses<WideNumbers> checked =
-      kPassesOf<WideScalarLanes<CheckedFixed>, CoefficientLanes<OneAtATime, WideNumbers>>;
+  using Coefficients = CoefficientLanes<OneAtATime, WideNumbers>;
+  const SoftPasses<WideNumbers> plain = kPassesOf<WideScalarLanes<Fixed>, Coefficients>;
+  const SoftPasses<WideNumbers> checked = kPassesOf<WideScalarLanes<CheckedFixed>, Coefficients>;
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    WideSource source{Random(seed), 0};
+    WideSource source{Random(seed)};
     // Up to the ends of all ranges.
     source.bits = source.random.between(8, 58);
     const Work<WideNumbers> start = randomWork(source);
@@ -323,18 +426,31 @@ TEST(WideKernelTest, EveryKernelGivesTheBitsOfCheckedNumbersWhichReportNothing) 
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
-TEST(DoubleKernelTest, TwoAndFourAtATimeGiveTheSameBits) {
-  using Numbers = PlainNumbers<double, false>;
-  NamedPasses<Numbers> all{{"portable", &kernels::doubleBy2}};
+using Doubles = PlainNumbers<double, false>;
+
+NamedPasses<Doubles> doubleKernels() {
+  NamedPasses<Doubles> all{{"portable", &kernels::doubleBy2}};
   if (isAvailable(KernelTarget::avx2)) all.emplace_back("avx2", kernels::doubleAvx2);
+  if (isAvailable(KernelTarget::avx512)) all.emplace_back("avx512", kernels::doubleAvx512);
+  return all;
+}
+
+TEST(DoubleKernelTest, EveryKernelPreparesTheSameBits) {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     DoubleSource source{Random(seed)};
-    const Work<Numbers> start = randomWork(source);
-    Work<Numbers> expected = start;
+    expectPreparedAlike(randomWork(source), kernels::doubleBy2, doubleKernels(), seed);
+  }
+}
+
+TEST(DoubleKernelTest, EveryKernelGivesTheSameBits) {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    DoubleSource source{Random(seed)};
+    const Work<Doubles> start = randomWork(source);
+    Work<Doubles> expected = start;
     ASSERT_EQ(expected.run(kernels::doubleBy2), 0u);
     ASSERT_FALSE(sameBytes(expected.bodies, start.bodies));
-    for (const auto& [name, passes] : all) {
-      Work<Numbers> work = start;
+    for (const auto& [name, passes] : doubleKernels()) {
+      Work<Doubles> work = start;
       ASSERT_EQ(work.run(*passes), 0u);
       ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.drives, expected.drives)) << name << ", seed " << seed;

@@ -41,8 +41,15 @@ class WideLanes {
     return mask ? a : b;
   }
   [[gnu::always_inline]] static auto above(V a, V b) { return a > b; }
-  [[gnu::always_inline]] static V greater(V a, V b) { return select(a < b, b, a); }
+  /// Few processors have these of 64 bits.
+  static constexpr bool kHasGreater = requires(V v) { Vectors::greater(v, v); };
+  [[gnu::always_inline]] static V greater(V a, V b) {
+    if constexpr (kHasGreater) return Vectors::greater(a, b);
+    return select(a < b, b, a);
+  }
+  /// @pre low <= high
   [[gnu::always_inline]] static V within(V x, V low, V high) {
+    if constexpr (kHasGreater) return Vectors::greater(Vectors::less(x, high), low);
     return select(x < low, low, select(high < x, high, x));
   }
   [[gnu::always_inline]] static V pushing(V sum, const SoftConstants<Numbers>& constants) {

@@ -30,6 +30,12 @@ struct Avx512Vectors {
 struct WideAvx512 : Avx512Vectors {
   using Body = SoftBody<WideNumbers>;
 
+  [[gnu::always_inline]] static V greater(V a, V b) {
+    return reinterpret_cast<V>(_mm512_max_epi64(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b)));
+  }
+  [[gnu::always_inline]] static V less(V a, V b) {
+    return reinterpret_cast<V>(_mm512_min_epi64(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b)));
+  }
   template <int kBits>
   [[gnu::always_inline]] static V rounded(V x) {
     return (x + ((std::int64_t{1} << (kBits - 1)) + (x >> 63))) >> kBits;
