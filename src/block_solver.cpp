@@ -303,7 +303,8 @@ S BlockSolver<S, N>::bounceOf(Block& block, int lane, int point, S bounceThresho
   if (pair.contacts[point].normalSpeed == S(0)) block.strikes = 1;
   if (pair.elasticity == S(0)) return S(0);
   block.bounces = 1;
-  return -(pair.elasticity * approach);
+  const S most = pair.elasticity > S(1) ? kMaxSum<S> / pair.elasticity : kMaxSum<S>;
+  return pair.elasticity * min(-approach, most);
 }
 
 template <Scalar S, class N>
@@ -410,14 +411,24 @@ void BlockSolver<S, N>::bounce() {
         const auto speedOf = [&](std::uint32_t body, int which) {
           return units_.fromSpeed(bodies_[body].velocity[which]);
         };
+        const S armA = units_.fromArm(axis.armA[lane], radiusA);
+        const S armB = units_.fromArm(axis.armB[lane], radiusB);
         const S speed =
             dot(n.x, speedOf(indexB, 0) - speedOf(indexA, 0), n.y, speedOf(indexB, 1) - speedOf(indexA, 1)) +
-            cross(units_.fromArm(axis.armB[lane], radiusB),
-                  units_.fromTurn(bodies_[indexB].velocity[2], radiusB),
-                  units_.fromArm(axis.armA[lane], radiusA),
+            cross(armB, units_.fromTurn(bodies_[indexB].velocity[2], radiusB), armA,
                   units_.fromTurn(bodies_[indexA].velocity[2], radiusA));
+        S spinA, spinB;
+        if constexpr (N::kStoresSpins) {
+          spinA = units_.fromSpin(axis.spinA[lane], radiusA);
+          spinB = units_.fromSpin(axis.spinB[lane], radiusB);
+        } else {
+          spinA = block.moments.momentA[lane] * armA;
+          spinB = block.moments.momentB[lane] * armB;
+        }
+        // Asked for once, and so more exact than that of the passes, which come nearer each time.
+        const S mass = reciprocal(S(1) + dot(spinA, armA, spinB, armB));
         const S before = units_.fromSum(axis.sum[lane]);
-        const S after = clamp(before + units_.fromUnit(axis.mass[lane]) * (wanted - speed), S(0), kMaxSum<S>);
+        const S after = clamp(before + mass * (wanted - speed), S(0), kMaxSum<S>);
         const S change = after - before;
         std::int64_t misfit = 0;
         axis.sum[lane] = units_.sum(after, misfit);
@@ -431,19 +442,15 @@ void BlockSolver<S, N>::bounce() {
           body.velocity[2] = heldSpeed<S, N>(
               units_.turn(units_.fromTurn(body.velocity[2], radiusBits) + turn, radiusBits, misfit), 2);
         };
-        const auto spin = [&](bool ofB) {
-          if constexpr (N::kStoresSpins) {
-            return ScalarLanes<S>::spinOf(
-                ofB ? units_.fromSpin(axis.spinB[lane], radiusB) : units_.fromSpin(axis.spinA[lane], radiusA),
-                change);
+        const auto turned = [&](S spin) {
+          if constexpr (FixedNumber<S>) {
+            return ScalarLanes<S>::spinOf(spin, change);
           } else {
-            return (ofB ? block.moments.momentB[lane] * axis.armB[lane]
-                        : block.moments.momentA[lane] * axis.armA[lane]) *
-                   change;
+            return spin * change;
           }
         };
-        if ((block.fixedA >> lane & 1) == 0) push(indexA, shareA, -change, -spin(false), radiusA);
-        if ((block.fixedB >> lane & 1) == 0) push(indexB, S(1) - shareA, change, spin(true), radiusB);
+        if ((block.fixedA >> lane & 1) == 0) push(indexA, shareA, -change, -turned(spinA), radiusA);
+        if ((block.fixedB >> lane & 1) == 0) push(indexB, S(1) - shareA, change, turned(spinB), radiusB);
       }
     }
   }

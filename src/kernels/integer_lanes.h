@@ -413,7 +413,9 @@ class CoefficientLanes {
     V mass = by16 ? inverse : inverse >> 4;
     mass = by4 ? mass : mass >> 2;
     mass = by2 ? mass << 1 : mass;
-    return Vectors::less(mass, all(kOne)) & present;
+    // Exact where nothing turns: head on, speeds are then, too.
+    mass = below(sum, (1 << 24) + 1) ? all(kOne) : Vectors::less(mass, all(kOne));
+    return mass & present;
   }
   std::uint64_t left() const {
     if constexpr (std::same_as<N, FastNumbers>) {
