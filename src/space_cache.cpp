@@ -93,8 +93,8 @@ std::uint64_t SpaceCache<S>::bytes() const {
     return (std::uint64_t{0} + ... + (list.size() * sizeof(list[0])));
   };
   if (!cached) return 0;
-  return of(poses, firstShape, lastShape, nextShape, placed, traits, around, planeOffset, planes, touched, isTouched,
-            planeRoom, geometry) +
+  return of(poses, firstShape, lastShape, nextShape, placed, traits, around, planeOffset, planes, touched,
+            isTouched, planeRoom, geometry) +
          localPlanes.bytes() + surfaces.bytes() + staticTree.bytes() + dynamicTree.bytes();
 }
 

@@ -174,9 +174,9 @@ template <Scalar S>
 struct Space<S>::Impl : SpaceCache<S> {
   using SpaceCache<S>::poses, SpaceCache<S>::firstShape, SpaceCache<S>::lastShape, SpaceCache<S>::nextShape,
       SpaceCache<S>::placed, SpaceCache<S>::planeOffset, SpaceCache<S>::planes, SpaceCache<S>::touched,
-      SpaceCache<S>::isTouched, SpaceCache<S>::planeRoom, SpaceCache<S>::traits, SpaceCache<S>::around, SpaceCache<S>::staticTree,
-      SpaceCache<S>::dynamicTree, SpaceCache<S>::localPlanes, SpaceCache<S>::geometry,
-      SpaceCache<S>::surfaces;
+      SpaceCache<S>::isTouched, SpaceCache<S>::planeRoom, SpaceCache<S>::traits, SpaceCache<S>::around,
+      SpaceCache<S>::staticTree, SpaceCache<S>::dynamicTree, SpaceCache<S>::localPlanes,
+      SpaceCache<S>::geometry, SpaceCache<S>::surfaces;
 
   // Wiring: who is told. By rising number.
   template <class Function>

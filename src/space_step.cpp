@@ -154,6 +154,13 @@ Pair<S> newPair(ShapeId a, ShapeId b) {
 
 }  // namespace
 
+/// Whether two shapes whose boxes overlap may collide at all. MIS: queryReject
+template <Scalar S>
+[[gnu::always_inline]] inline bool Space<S>::mayCollide(std::uint32_t a, std::uint32_t b) const {
+  const ShapeTraits<S>&traitsA = impl_->traits[a], &traitsB = impl_->traits[b];
+  return traitsA.body != traitsB.body && accepts(traitsA.filter, traitsB.filter);
+}
+
 /// How far apart two boxes may be for their shapes to be a pair, m.
 template <Scalar S>
 S Space<S>::pairMargin() const {
@@ -164,12 +171,6 @@ namespace {
 
 /// Of a pair, by which pairs are sorted.
 std::uint64_t sortKey(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
-
-/// Whether two shapes whose boxes overlap may collide at all. MIS: queryReject
-template <Scalar S>
-[[gnu::always_inline]] inline bool mayCollide(const ShapeTraits<S>& a, const ShapeTraits<S>& b) {
-  return a.body != b.body && accepts(a.filter, b.filter);
-}
 
 /// As intersects with a box grown by a margin, without a branch: for boxes that are near each other, whether
 /// they overlap is as good as random.
@@ -203,7 +204,6 @@ void Space<S>::findPairs() {
   // Bytes may be a part of anything: what is not asked for again is not asked for after each of them.
   const Pair<S>* const pairs = state_.pairs.data();
   const PlacedShape<S>* const placed = impl.placed.data();
-  const ShapeTraits<S>* const traits = impl.traits.data();
   std::uint8_t* const overlapping = impl.overlapping.data();
   std::uint32_t old = 0, to = 0;
   const auto beginRun = [&] {
@@ -241,7 +241,7 @@ void Space<S>::findPairs() {
     for (std::size_t i = 0; i < found; ++i) {
       const std::uint64_t key = close[i];
       const std::uint32_t a = static_cast<std::uint32_t>(key >> 32), b = static_cast<std::uint32_t>(key);
-      if (!mayCollide(traits[a], traits[b])) continue;
+      if (!mayCollide(a, b)) continue;
       while (old < count && keyOf(pairs[old]) < key) leave();
       if (old < count && keyOf(pairs[old]) == key) {
         keep(1);

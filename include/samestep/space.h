@@ -654,6 +654,7 @@ class Space {
   void eraseBody(BodyId id);
   void eraseShape(ShapeId id);
   /// Whether the filters and bodies of two shapes let them meet. MIS: queryReject
+  bool mayCollide(std::uint32_t a, std::uint32_t b) const;
   bool askHandlers(Pair<S>& pair);
   const CollisionHandler<S>* boundHandler(HandlerBinding::Kind kind, CollisionType typeA,
                                           CollisionType typeB) const;
