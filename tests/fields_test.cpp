@@ -53,8 +53,8 @@ TYPED_TEST(FieldsTest, RecordsOfMovingThingsAreTriviallyCopyable) {
 // the ids a Space gives, and named fillers.
 TYPED_TEST(FieldsTest, FieldsAccountForEveryByte) {
   using S = TypeParam;
-  constexpr std::size_t kDerived =
-      sizeof(Vector<S>) + 2 * sizeof(Scaled<S>);          // Rotation, inverse mass, moment.
+  constexpr std::size_t kDerived = sizeof(Vector<S>) + 2 * sizeof(Scaled<S>) +
+                                   sizeof(S);             // Rotation, inverse mass, moment, moment per mass.
   constexpr std::size_t kBelonging = sizeof(BodyId) + 4;  // Id and owner.
   constexpr std::size_t kWithinStep = 2;
   EXPECT_EQ(leavesOf(Body<S>()).bytes() + kDerived + kBelonging + kWithinStep, sizeof(Body<S>));
