@@ -2,6 +2,7 @@
 #include "cases.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <samestep/circle_shape.h>
@@ -154,6 +155,20 @@ void resolve(ShapePlan& plan) {
   if (plan.make != ShapePlan::Make::hull) return;
   plan.make = ShapePlan::Make::raw;
   plan.count = makeConvex(plan.points, plan.count);
+}
+
+double armOf(const ShapePlan& plan) {
+  double arm = 0;
+  for (int i = 0; i < plan.count; ++i) {
+    arm = std::max(arm, std::fabs(static_cast<double>(plan.points[i].x)) +
+                            std::fabs(static_cast<double>(plan.points[i].y)));
+  }
+  return arm;
+}
+
+double reachOf(const ShapePlan& plan, const PosePlan& pose) {
+  return armOf(plan) + std::max(std::fabs(static_cast<double>(pose.position.x)),
+                                std::fabs(static_cast<double>(pose.position.y)));
 }
 
 template std::optional<Shape<double>> build<double>(const ShapePlan&);

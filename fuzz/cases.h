@@ -56,6 +56,12 @@ std::optional<Shape<S>> build(const ShapePlan& plan);
 /// the business of the target `hull`.
 void resolve(ShapePlan& plan);
 
+/// Of the farthest point of a shape from its body, at most, m.
+double armOf(const ShapePlan& plan);
+/// The largest number that places a shape, m: it rounds the vertices, even where they come to lie at the
+/// origin.
+double reachOf(const ShapePlan& plan, const PosePlan& pose);
+
 template <Scalar S>
 Vector<S> rotationOf(const PosePlan& pose) {
   const Vector<S> turned = pose.angle == Fixed(0) ? Vector<S>(S(1), S(0)) : forAngle(as<S>(pose.angle));

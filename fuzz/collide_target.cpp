@@ -299,16 +299,6 @@ struct Scene {
   }
 };
 
-/// Of the farthest point of a shape from its body, at most, m.
-double armOf(const ShapePlan& plan) {
-  double arm = 0;
-  for (int i = 0; i < plan.count; ++i) {
-    arm = std::max(arm, std::fabs(static_cast<double>(plan.points[i].x)) +
-                            std::fabs(static_cast<double>(plan.points[i].y)));
-  }
-  return arm;
-}
-
 /// The same question without anything prepared.
 void checkPlain(Scene<Fixed>& scene, const Transform<Fixed>& poseA, const Transform<Fixed>& poseB,
                 const CollisionInfo<Fixed>& info) {
@@ -327,7 +317,9 @@ void checkDouble(double fixedDistance) {
   if (!scene.make()) return;
   const PlacedShape<double>&a = scene.a.at(transformOf<double>(current.poseA)),
         &b = scene.b.at(transformOf<double>(current.poseB));
-  const Cores<double> cores(a, b);
+  Cores<double> cores(a, b);
+  cores.reach =
+      std::max({cores.reach, reachOf(current.shapeA, current.poseA), reachOf(current.shapeB, current.poseB)});
   const CollisionInfo<double> info = touch(a, b);
   // Only exact products decide right in a difference that is as thin as rounding.
   if (thickness(cores) < cores.reach * kThin || cores.shortest < cores.reach * kDust) return;

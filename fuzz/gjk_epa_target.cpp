@@ -92,7 +92,9 @@ template <Scalar S>
 void runWith(Search<S>& search) {
   const PlacedShape<S>&a = search.a.at(transformOf<S>(current.poseA)),
         &b = search.b.at(transformOf<S>(current.poseB));
-  const Cores<S> cores(a, b);
+  Cores<S> cores(a, b);
+  cores.reach =
+      std::max({cores.reach, reachOf(current.shapeA, current.poseA), reachOf(current.shapeB, current.poseB)});
   const SupportPair<S> pair{SupportShape<S>(a), SupportShape<S>(b)};
   CollisionStats stats;
   if (!kIsFixed<S> && (thickness(cores) < cores.reach * kThin || cores.shortest < cores.reach * kDust)) {

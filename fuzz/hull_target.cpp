@@ -212,6 +212,28 @@ void checkMeasures(const Shape<Fixed>& shape) {
 }
 
 /// What a factory makes of a plan: refused with a type, or a shape that is whole.
+/// A copy is the same; with anything changed it is another.
+void checkSame(const Shape<Fixed>& shape) {
+  expect(Shape<Fixed>(shape) == shape, "a copy is the same");
+  const auto expectOther = [&](auto&& change) {
+    Shape<Fixed> other = shape;
+    change(other);
+    expect(!(other == shape), "a shape with something changed is another");
+    other = shape;
+    expect(other == shape, "what is assigned is the same");
+  };
+  const Fixed step = Fixed::ratio(1, 8);
+  expectOther([&](Shape<Fixed>& other) { other.setElasticity(shape.elasticity() + step); });
+  expectOther([&](Shape<Fixed>& other) { other.setFriction(shape.friction() + step); });
+  expectOther([&](Shape<Fixed>& other) { other.setSurfaceVelocity({step, step}); });
+  expectOther([&](Shape<Fixed>& other) { other.setUserData(shape.userData() + 1); });
+  expectOther([&](Shape<Fixed>& other) { other.setBody({7, 1}); });
+  expectOther([&](Shape<Fixed>& other) { other.setCollisionType(shape.collisionType() + 1); });
+  expectOther([&](Shape<Fixed>& other) { other.setFilter({1, 2, 3}); });
+  expectOther([&](Shape<Fixed>& other) { other.setSensor(true); });
+  expectOther([&](Shape<Fixed>& other) { other.setMass(Fixed(5)); });
+}
+
 void checkShape(const ShapePlan& plan) {
   const auto shape = build<Fixed>(plan);
   const auto checked = build<CheckedFixed>(plan);
@@ -220,6 +242,7 @@ void checkShape(const ShapePlan& plan) {
   expect(shape->wellFormed(), "a shape that was made is well formed");
   expect(shape->vertices().size() <= kMaxPolyVertices, "no shape has too many vertices");
   checkMeasures(*shape);
+  checkSame(*shape);
   Shape<Fixed> copy = *shape;
   copy.setMass(Fixed(3));
   try {
