@@ -376,7 +376,7 @@ SoftMotion<S> BlockSolver<S, N>::motion(std::uint32_t index) const {
   if ((held & 4) != 0) motion.held = static_cast<std::uint8_t>(motion.held | Body<S>::kHeldSpin);
   for (int k = 0; k < 3; ++k) {
     const int radius = k == 2 ? start.radiusBits : 0;
-    if constexpr (std::same_as<N, FastNumbers>) {
+    if constexpr (kIntegers) {
       // What is finer than the unit of this step stays.
       std::int64_t misfit = 0;
       const Speed from =

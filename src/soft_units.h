@@ -275,7 +275,7 @@ class SoftUnits<S, N> {
     return static_cast<std::uint8_t>(clamp(wayBits_ + radius(radiusBits) + 1, 1, 63));
   }
   /// A way in a body's coordinates, by its radius.
-  [[gnu::always_inline]] static std::int32_t arm(S x, int radiusBits) {
+  [[gnu::always_inline]] std::int32_t arm(S x, int radiusBits) const {
     const int bits = radius(radiusBits);
     const std::int64_t most = std::int64_t{1} << (32 + min(bits, 29));
     const std::int64_t in = clamp(x.raw(), -most, most);
@@ -299,10 +299,10 @@ class SoftUnits<S, N> {
   static S fromUnit(std::int32_t x) {
     return S::fromRaw(std::int64_t{x} * (std::int64_t{1} << (32 - N::kUnitBits)));
   }
-  static S fromArm(std::int32_t x, int radiusBits) {
+  S fromArm(std::int32_t x, int radiusBits) const {
     return S::fromRaw(units::shifted(x, N::kUnitBits - 32 - radius(radiusBits)));
   }
-  static S fromSpin(std::int32_t x, int radiusBits) {
+  S fromSpin(std::int32_t x, int radiusBits) const {
     return S::fromRaw(units::shifted(x, N::kSpinBits - 32 + radius(radiusBits)));
   }
   [[gnu::always_inline]] S fromSpeed(Speed x) const { return S::fromRaw(units::shifted(x, speedBits_ - 32)); }
@@ -315,8 +315,9 @@ class SoftUnits<S, N> {
   }
   [[gnu::always_inline]] S fromSum(Sum x) const { return S::fromRaw(units::shifted(x, speedBits_ - 32)); }
 
-  /// In 64 bits no turning loses anything.
-  static int radius(int bits) { return clamp(bits, kWide ? 0 : -16, kAnyRadiusBits); }
+  /// What turnings are kept by. In 64 bits it is not less than what ways are finer by, so that a bend is
+  /// never finer than its angle's square.
+  int radius(int bits) const { return clamp(bits, kWide ? -finer_ : -16, kAnyRadiusBits); }
 
  private:
   /// What speeds, impulses and ways are held below.
