@@ -43,9 +43,8 @@ std::unique_ptr<World> makeBox2d(const PeerScene& scene);
 
 /// The scene in the engine of that name: `chipmunk` (10 iterations; `chipmunkN` for N), `box2d24` (8 velocity
 /// and 3 position iterations), `samestep-double-impulsesN`, `samestep-double-softN` (N substeps), and the
-/// same with `fixed`; these also with `xN` for N workers. Of Samestep the kernel is that of the target, if it
-/// is available. Null if there is no such engine.
-std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene,
-                                 KernelTarget kernel = KernelTarget::best);
+/// same with `fixed`; these also with `xN` for N workers, and with `-KERNEL` for one kernel.
+/// Null if there is no such engine, or if this machine has no such kernel.
+std::unique_ptr<World> makeWorld(const std::string& engine, const PeerScene& scene);
 
 }  // namespace samestep::bench

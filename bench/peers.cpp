@@ -36,7 +36,6 @@ struct Plan {
   bool wall = false;
   std::string folder = SAMESTEP_PEER_SCENES;
   std::string csv, details;
-  KernelTarget kernel = KernelTarget::best;
 };
 
 /// What was found of one engine in one scene.
@@ -62,7 +61,7 @@ double median(std::vector<double> values) {
 }
 
 void measure(const Plan& plan, const std::string& engine, const PeerScene& scene, Cell& cell) {
-  const std::unique_ptr<World> world = makeWorld(engine, scene, plan.kernel);
+  const std::unique_ptr<World> world = makeWorld(engine, scene);
   for (int i = 0; i < plan.warmUp; ++i) world->step();
   // What other threads do is no part of the thread's own time.
   const clockid_t clock = plan.wall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
@@ -187,7 +186,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--engines", plan.engines,
                  "chipmunk, chipmunkITERATIONS, box2d24, samestep-double-softSUBSTEPS,\n"
-                 "samestep-double-impulsesITERATIONS, and the same with fixed; with xN for N workers")
+                 "samestep-double-impulsesITERATIONS, and the same with fixed; with xN for N workers;\n"
+                 "with -KERNEL for contacts solved by that kernel: portable, sse42, avx2 ...")
       ->delimiter(',')
       ->capture_default_str();
   app.add_option("--rounds", plan.rounds, "medians are over these")
@@ -205,13 +205,6 @@ int main(int argc, char** argv) {
   app.add_option("--folder", plan.folder, "where the scenes are")->capture_default_str();
   app.add_option("--csv", plan.csv, "file for the figures, - for the standard output")->capture_default_str();
   app.add_option("--details", plan.details, "file for ranges over the rounds and bodies gone astray");
-  std::string kernel = samestep::kernelName(plan.kernel);
-  app.add_option("--kernel", kernel, "that Samestep's soft step solves contacts with: best, or one by name")
-      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  if (!samestep::findKernel(kernel, plan.kernel) || !samestep::isAvailable(plan.kernel)) {
-    std::fprintf(stderr, "no kernel '%s' on this machine\n", kernel.c_str());
-    return 2;
-  }
   return samestep::bench::run(plan);
 }

@@ -74,14 +74,15 @@ double deepestOverlap(Space<S>& space) {
 
 /// Seconds per step of one run, or of as many as it takes to measure it.
 template <Scalar S>
-double secondsPerStep(const SceneSource& source, const Method& method, int count, std::uint64_t steps,
-                      double leastSeconds) {
+double secondsPerStep(const SceneSource& source, const Method& method, int count, KernelTarget kernel,
+                      std::uint64_t steps, double leastSeconds) {
   const std::uint64_t warmUp = std::min(kWarmUpSteps, steps / 10);
   double seconds = 0;
   double timed = 0;
   for (int repeat = 0; repeat == 0 || (repeat < kMostRepeats && seconds < leastSeconds); ++repeat) {
     Scene<S> scene(source);
     useMethod(scene.space(), method, count);
+    scene.space().setKernel(kernel);
     while (scene.tick() < warmUp) scene.step();
     const double start = threadSeconds();
     while (scene.tick() < steps) scene.step();
@@ -253,6 +254,7 @@ void Yardstick::describe(Chart& chart) const {
 
 struct Run {
   const Method* method;
+  KernelTarget kernel;
   int count;
   std::vector<double> milliseconds;
 };
@@ -262,15 +264,23 @@ struct Run {
 Chart sweepScene(const SceneSource& source, const SweepOptions& options) {
   std::vector<Run> runs;
   for (const Method& method : methods()) {
-    for (const int count : method.counts) runs.push_back({&method, count, {}});
+    const bool soft = method.solver == SolverKind::softStep;
+    for (std::size_t i = 0; i < (soft ? options.kernels.size() : 1); ++i) {
+      const KernelTarget kernel = soft ? options.kernels[i] : KernelTarget::best;
+      for (const int count : method.counts) runs.push_back({&method, kernel, count, {}});
+    }
   }
   const int total = static_cast<int>(runs.size()) * (options.rounds + 1);
   int done = 0;
   const auto tell = [&](const std::string& what) {
     if (options.progress) options.progress(done, total, what);
   };
-  const auto nameOf = [](const Run& run) {
-    return std::string(run.method->name) + ", " + std::to_string(run.count) + " " + run.method->unit;
+  const auto lineOf = [&](const Run& run) {
+    const bool one = options.kernels.size() == 1 || run.method->solver != SolverKind::softStep;
+    return std::string(run.method->name) + (one ? "" : std::string(" (") + kernelName(run.kernel) + ")");
+  };
+  const auto nameOf = [&](const Run& run) {
+    return lineOf(run) + ", " + std::to_string(run.count) + " " + run.method->unit;
   };
 
   tell("looking for what to measure errors by");
@@ -281,7 +291,7 @@ Chart sweepScene(const SceneSource& source, const SweepOptions& options) {
            nameOf(run));
       run.milliseconds.push_back(1000 * withScalarOf(*run.method, [&](auto scalar) {
                                    return secondsPerStep<decltype(scalar)>(source, *run.method, run.count,
-                                                                           yardstick.steps(),
+                                                                           run.kernel, yardstick.steps(),
                                                                            options.leastSeconds);
                                  }));
       ++done;
@@ -290,13 +300,13 @@ Chart sweepScene(const SceneSource& source, const SweepOptions& options) {
   Chart chart;
   chart.scene = source.summary().name;
   yardstick.describe(chart);
-  const Method* last = nullptr;
+  const Run* last = nullptr;
   for (const Run& run : runs) {
     tell("error: " + nameOf(run));
-    if (run.method != last) {
-      chart.lines.push_back({run.method->name, run.method->scalar, run.method->unit, {}});
+    if (last == nullptr || run.method != last->method || run.kernel != last->kernel) {
+      chart.lines.push_back({lineOf(run), run.method->scalar, run.method->unit, {}});
     }
-    last = run.method;
+    last = &run;
     ChartPoint& point = chart.lines.back().points.emplace_back();
     const auto [fastest, slowest] = std::minmax_element(run.milliseconds.begin(), run.milliseconds.end());
     point.count = run.count;

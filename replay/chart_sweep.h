@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include <samestep/kernel.h>
 #include <samestep/scene.h>
 
 #include "chart.h"
@@ -17,6 +19,8 @@ struct SweepOptions {
   int rounds = 3;           ///< In which all settings take turns; at least 1.
   /// A run is repeated until the steps timed in it took so long, s.
   double leastSeconds = 0.02;
+  /// The soft step has a line for each; all make the same errors.
+  std::vector<KernelTarget> kernels{KernelTarget::best};
   /// Is told in words what has been done, and of how much: runs.
   std::function<void(int done, int total, const std::string& what)> progress;
 };

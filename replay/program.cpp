@@ -39,12 +39,16 @@ KernelTarget ComputeOptions::target() const {
   throw Unusable(reason);
 }
 
-void addComputeOptions(CLI::App& app, ComputeOptions& options) {
+std::vector<std::string> kernelNames() {
   std::vector<std::string> names;
   for (const KernelTarget target : kKernelTargets) names.emplace_back(kernelName(target));
+  return names;
+}
+
+void addComputeOptions(CLI::App& app, ComputeOptions& options) {
   app.add_option("--kernel", options.kernel,
                  "The processor instructions to solve contacts with; no hash differs")
-      ->check(CLI::IsMember(names))
+      ->check(CLI::IsMember(kernelNames()))
       ->capture_default_str();
   app.add_option("--workers", options.workers,
                  "How many threads share all that can be shared; no hash differs")

@@ -56,6 +56,9 @@ struct ComputeOptions {
   KernelTarget target() const;
 };
 
+/// Of all kernels, those that this machine lacks, too.
+std::vector<std::string> kernelNames();
+
 /// Adds --kernel and --workers.
 void addComputeOptions(CLI::App& app, ComputeOptions& options);
 

@@ -13,6 +13,7 @@ struct Options {
   std::string csv;
   std::uint64_t steps = 0;
   int rounds = 3;
+  std::vector<std::string> kernels;
 };
 
 int run(const Options& options) {
@@ -23,6 +24,10 @@ int run(const Options& options) {
   SweepOptions sweep;
   sweep.steps = options.steps;
   sweep.rounds = options.rounds;
+  if (!options.kernels.empty()) sweep.kernels.clear();
+  for (const std::string& name : options.kernels) {
+    sweep.kernels.push_back(ComputeOptions{.kernel = name}.target());
+  }
   sweep.progress = [&](int done, int total, const std::string& what) {
     status.show("chart: " + std::to_string(done) + " of " + std::to_string(total) + " runs; " + what);
   };
@@ -54,6 +59,10 @@ void addChart(CLI::App& app, int& result) {
                    "Rounds in which the settings take turns; the time of each is its median")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  word->add_option("--kernel", options->kernels,
+                   "Give the soft step a line for these processor instructions; may be given several times, "
+                   "the best of this machine if not given")
+      ->check(CLI::IsMember(kernelNames()));
   word->add_option("--ticks", options->steps,
                    "How many steps to make; if not given 330, or what the scene's exact answer is for")
       ->check(CLI::Range(std::uint64_t{6}, std::uint64_t{1} << 20));

@@ -61,8 +61,8 @@ void clearPoint(ContactBlock<N>& block, BlockRest<N>& rest, BlockInput<N>& in, i
       typename N::Sum(0);
 }
 
-/// The part of a moment.
-[[gnu::always_inline]] inline std::int32_t impulsePart(std::int32_t share, std::int32_t moment) {
+/// The share of a moment.
+[[gnu::always_inline]] inline std::int32_t momentPart(std::int32_t share, std::int32_t moment) {
   return static_cast<std::int32_t>(units::rounded<IntegerUnits::kUnitBits>(std::int64_t{share} * moment));
 }
 
@@ -204,8 +204,8 @@ bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair,
   in.cosB[lane] = units_.unit(b.rotation.x);
   in.sinB[lane] = units_.unit(b.rotation.y);
   if constexpr (kIntegers) {
-    in.momentA[lane] = impulsePart(shares.a, moments_[a.start]);
-    in.momentB[lane] = impulsePart((1 << N::kUnitBits) - shares.a, moments_[b.start]);
+    in.momentA[lane] = momentPart(shares.a, moments_[a.start]);
+    in.momentB[lane] = momentPart((1 << N::kUnitBits) - shares.a, moments_[b.start]);
   } else {
     Vector<S> reachA, reachB;
     for (int i = 0; FixedNumber<S> && i < pair.count; ++i) {

@@ -45,6 +45,31 @@ TEST(ChartSweepTest, RunsEveryMethodWithEveryCount) {
   EXPECT_FALSE(frontOf(chart).empty());
 }
 
+TEST(ChartSweepTest, TheSoftStepHasALineForEachKernel) {
+  SweepOptions options;
+  options.steps = 12;
+  options.rounds = 1;
+  options.leastSeconds = 0;
+  options.kernels = {KernelTarget::portable, KernelTarget::best};
+  const Chart chart = sweepScene(SceneSource::find("pyramid:3"), options);
+
+  std::size_t expected = 0;
+  for (const Method& method : methods()) {
+    const bool soft = method.solver == SolverKind::softStep;
+    const ChartLine& line = chart.lines.at(expected);
+    EXPECT_EQ(line.method, std::string(method.name) + (soft ? " (portable)" : ""));
+    if (soft) {
+      const ChartLine& best = chart.lines.at(expected + 1);
+      EXPECT_EQ(best.method, std::string(method.name) + " (best)");
+      for (std::size_t k = 0; k < line.points.size(); ++k) {
+        EXPECT_EQ(line.points[k].error, best.points[k].error);
+      }
+    }
+    expected += soft ? 2 : 1;
+  }
+  EXPECT_EQ(chart.lines.size(), expected);
+}
+
 TEST(ChartSweepTest, ErrorsAreTheSameInEveryRunOfTheProgram) {
   const SceneSource source = SceneSource::find("bounce");
   const Chart a = sweep(source, 90);

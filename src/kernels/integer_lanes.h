@@ -27,7 +27,6 @@ class WideLanes {
 
   static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
   [[gnu::always_inline]] static V zero() { return V{}; }
-  [[gnu::always_inline]] static V whole() { return all(1 << Numbers::kUnitBits); }
   [[gnu::always_inline]] static V all(std::int64_t x) { return V{} + x; }
   [[gnu::always_inline]] static C coefficient(const std::int32_t* from) { return Vectors::widen(from); }
   [[gnu::always_inline]] static V load(const std::int64_t* from) {
@@ -212,7 +211,6 @@ class FastLanes {
 
   static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
   [[gnu::always_inline]] static V zero() { return V{}; }
-  [[gnu::always_inline]] static C whole() { return C(all(1 << Numbers::kUnitBits)); }
   [[gnu::always_inline]] static V all(std::int32_t x) { return V{} + x; }
   [[gnu::always_inline]] static V load(const std::int32_t* from) {
     return *reinterpret_cast<const typename Vectors::Loose*>(from);

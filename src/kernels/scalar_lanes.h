@@ -204,7 +204,6 @@ struct WideScalarLanes {
 
   static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
   static V zero() { return V(); }
-  static V whole() { return all(1 << Numbers::kUnitBits); }
   static V all(std::int64_t x) { return S::fromRaw(x); }
   static V load(const std::int64_t* from) { return all(*from); }
   static C coefficient(const std::int32_t* from) { return all(*from); }
