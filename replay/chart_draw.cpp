@@ -9,7 +9,7 @@
 namespace samestep {
 namespace {
 
-constexpr int kWidth = 860;
+constexpr int kWidth = 900;
 constexpr int kHeight = 520;
 constexpr int kLeft = 88;
 constexpr int kRight = 630;
