@@ -16,8 +16,9 @@ struct BlockGroup {
   bool inOrder = false;
 };
 
-/// Fewer blocks are no task of their own.
-inline constexpr std::uint32_t kBlockGrain = 24;
+/// Fewer blocks, 96 pairs, are no task of their own.
+template <class N>
+inline constexpr std::uint32_t kBlockGrain = 96 / N::kLanes;
 
 /// The same of bodies in a loop of few operations each.
 inline constexpr std::uint32_t kBodyGrain = 256;
@@ -37,13 +38,13 @@ class Finding {
 };
 
 /// Calls part(begin, end) for ranges of blocks, group after group: within a group at the same time.
-template <class Part>
+template <class N, class Part>
 void eachGroup(const std::vector<BlockGroup>& groups, Crew& crew, Part&& part) {
   for (const BlockGroup& group : groups) {
     if (group.inOrder) {
       part(group.begin, group.end);
     } else {
-      crew.each(group.end - group.begin, kBlockGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      crew.each(group.end - group.begin, kBlockGrain<N>, [&](std::uint32_t begin, std::uint32_t end) {
         part(group.begin + begin, group.begin + end);
       });
     }
@@ -56,7 +57,7 @@ bool passOverGroups(ContactPass<N> kernel, std::vector<ContactBlock<N>>& blocks,
                     std::vector<BlockRest<N>>& rests, const std::vector<BlockGroup>& groups,
                     std::vector<SoftBody<N>>& bodies, const SoftConstants<N>& constants, Crew& crew) {
   Finding left;
-  eachGroup(groups, crew, [&](std::uint32_t begin, std::uint32_t end) {
+  eachGroup<N>(groups, crew, [&](std::uint32_t begin, std::uint32_t end) {
     left.note(kernel(blocks.data() + begin, rests.data() + begin, end - begin, bodies.data(), constants) !=
               0);
   });

@@ -458,7 +458,7 @@ void BlockSolver<S, N>::bounce() {
 
 template <Scalar S, class N>
 void BlockSolver<S, N>::store(std::vector<Pair<S>>& pairs, Crew& crew) const {
-  crew.each(blockCount_, kBlockGrain, [&](std::uint32_t begin, std::uint32_t end) {
+  crew.each(blockCount_, kBlockGrain<N>, [&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i) storeBlock(i, pairs);
   });
 }

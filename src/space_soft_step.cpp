@@ -74,7 +74,7 @@ bool takePairs(Solver& solver, Impl& impl, const std::vector<Pair<S>>& pairs, S 
       if (blockGroup.inOrder) {
         take(0, blockGroup.end - start);
       } else {
-        impl.crew.each(blockGroup.end - start, kBlockGrain, take);
+        impl.crew.each(blockGroup.end - start, kBlockGrain<typename Solver::Numbers>, take);
       }
       first += count;
     }
