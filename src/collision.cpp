@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/collision.h>
 
+#include <array>
+
 #include "clip.h"
 #include "collision_functions.h"
 #include "gjk.h"
@@ -124,6 +126,25 @@ ClosestPoints<S> closestPoints(const PlacedShape<S>& a, const PlacedShape<S>& b,
   return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);
 }
 
+/// Whether of two shapes that are nearest at a vertex of one that vertex lies opposite the edge of the other.
+/// Of faces that meet all but in one line, rounded distances may name one that ends before.
+template <Scalar S>
+bool facesTip(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest) {
+  if (closest.vertexA >= 0 && closest.vertexB >= 0) return true;
+  const bool tipOnA = closest.vertexA >= 0;
+  const PlacedShape<S>& other = tipOnA ? b : a;
+  const Vector<S> tip = tipOnA ? a.planes[closest.vertexA].v0 : b.planes[closest.vertexB].v0;
+  const auto end = [&](int shift) { return other.planes[closest.id >> shift & 0xff].v0; };
+  const Vector<S> from = end(tipOnA ? 16 : 24), to = end(tipOnA ? 0 : 8);
+  return sign(exactDot(to - from, tip - from)) >= 0 && sign(exactDot(to - from, tip - to)) <= 0;
+}
+
+/// The two edges at a vertex, each by the vertex it ends at.
+template <Scalar S>
+std::array<int, 2> edgesAt(const PlacedShape<S>& shape, int vertex) {
+  return {vertex, vertex + 1 < shape.count ? vertex + 1 : 0};
+}
+
 /// Two shapes with edges, by the search for their nearest features.
 template <Scalar S>
 void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start, S margin,
@@ -136,6 +157,14 @@ void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId 
   clip(edgeAt(a, onA, n), a.radius, edgeAt(b, onB, -n), b.radius, n, margin, info);
   if (info.count > 0 || (closest.vertexA < 0 && closest.vertexB < 0)) [[likely]]
     return;
+  if (!facesTip(a, b, closest)) {
+    for (const int edgeA : edgesAt(a, onA)) {
+      for (const int edgeB : edgesAt(b, onB)) {
+        clip(edgeTo(a, edgeA), a.radius, edgeTo(b, edgeB), b.radius, n, margin, info);
+        if (info.count > 0) return;
+      }
+    }
+  }
   const bool tipOnA = closest.vertexA >= 0;
   touchTip(a, tipOnA ? closest.vertexA : onA, b, closest.vertexB >= 0 ? closest.vertexB : onB,
            closest.distance, tipOnA, info);

@@ -67,7 +67,8 @@ bool isOutside(const Vector<S>& a, const Vector<S>& b, const Vector<S>& c) {
 }
 
 /// Puts p between the ends of edge `at` and leaves out what is then no corner any more.
-/// @return how many vertices `grown` has
+/// @return how many vertices `grown` has; less than two, in double, where all others are within rounding of
+/// one line through p: then no edge is left
 template <Scalar S>
 int insert(const HullEdge<S>* hull, int count, int at, const MinkowskiPoint<S>& p, HullEdge<S>* grown) {
   grown[0].from = p;
@@ -86,7 +87,7 @@ int insert(const HullEdge<S>* hull, int count, int at, const MinkowskiPoint<S>& 
       adjacent = false;
     }
   }
-  measure(grown[kept - 1], p);
+  if (kept > 1) measure(grown[kept - 1], p);
   return kept;
 }
 
@@ -117,11 +118,14 @@ ClosestPoints<S> epa(const SupportPair<S>& pair, const MinkowskiPoint<S>& v0, co
     const MinkowskiPoint<S>& to = hull[at + 1 < count ? at + 1 : 0].from;
     const MinkowskiPoint<S> p = pair.farthest(perp(to.ab - from.ab));
 
-    if (isVertex(hull, count, p.ab) || iteration >= kMaxEpaIterations || !isOutside(from.ab, to.ab, p.ab)) {
+    const bool ends =
+        isVertex(hull, count, p.ab) || iteration >= kMaxEpaIterations || !isOutside(from.ab, to.ab, p.ab);
+    const int corners = ends ? 0 : insert(hull, count, at, p, grown);
+    if (corners < 2) {
       if (stats != nullptr && iteration >= kWarnEpaIterations) ++stats->highEpaIterations;
       return closestPoints(hull[at], to);
     }
-    count = insert(hull, count, at, p, grown);
+    count = corners;
     std::swap(hull, grown);
   }
 }

@@ -147,15 +147,22 @@ FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, 
   return local ? searchFaces<LocalWay<S>>(a, b, reach, start) : searchFaces<ExactWay<S>>(a, b, reach, start);
 }
 
+/// Faces shorter than this, in metres, are turned against their normals where vertices are rounded: by 2^-16
+/// rad and more.
+template <Scalar S>
+inline constexpr S kShortFace = S(0x1p-16);
+
 /// Whether the nearest vertex lies above the inside of the face, or below it: then, apart, nothing of the
-/// shapes is nearer.
+/// shapes is nearer. No claim is made for a short face.
 template <Scalar S>
 bool facesVertex(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis) {
   const PlacedShape<S>& shape = axis.onB ? b : a;
   const Vector<S> v = (axis.onB ? a : b).planes[axis.vertex].v0;
   const Vector<S> to = shape.planes[axis.face].v0;
   const Vector<S> from = shape.planes[(axis.face == 0 ? shape.count : axis.face) - 1].v0;
-  return sign(exactDot(to - from, v - from)) >= 0 && sign(exactDot(to - from, v - to)) <= 0;
+  const Vector<S> along = to - from;
+  if (max(abs(along.x), abs(along.y)) < kShortFace<S>) return false;
+  return sign(exactDot(along, v - from)) >= 0 && sign(exactDot(along, v - to)) <= 0;
 }
 
 }  // namespace samestep

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The collision routines on the shapes and poses of the degenerate library, and what fuzzing found in them.
-#include "support/degenerate_shapes.h"
+#include "degenerate_shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include <samestep/circle_shape.h>
 #include <samestep/collision.h>
 #include <samestep/poly_shape.h>
+#include <samestep/segment_shape.h>
 
 #include "support/scalars.h"
 
@@ -99,6 +100,47 @@ TYPED_TEST(DegenerateShapesTest, CircleRoundTheTipOfASliverTurnedInsideOutIsPush
   EXPECT_NEAR(static_cast<double>(info.normal.x), -1, 1e-9);
   EXPECT_NEAR(static_cast<double>(dot(info.points[0].pointB - info.points[0].pointA, info.normal)),
               416 - 14958, 1e-5);
+}
+
+// All their edges are in one line to some units. By rounded distances the end of the sliver was nearest to
+// the segment, 938 m before the segment begins, and there they were said to touch.
+TYPED_TEST(DegenerateShapesTest, SliverAndSegmentInOneLineTouchWhereBothAre) {
+  using S = TypeParam;
+  const std::int64_t metre = std::int64_t{1} << 32;
+  const Shape<S> sliver =
+      polyShapeRaw<S>(BodyId(),
+                      std::vector<Vector<S>>{fromUnits<S>({-1, -8430215495680}), fromUnits<S>({32, 78}),
+                                             fromUnits<S>({32, 608 * metre + 469}), fromUnits<S>({-1, 32})},
+                      fromUnits<S>(std::int64_t{64}));
+  const Shape<S> segment =
+      segmentShape<S>(BodyId(), fromUnits<S>({0, 2465}), fromUnits<S>({92, 1024 * metre - 86}));
+  const CollisionInfo<S> info =
+      TestFixture::touch(sliver, Transform<S>::translation(fromUnits<S>({0, 13})), segment,
+                         Transform<S>(S(-1), S(0), S(0), S(-1), fromUnits<S>(std::int64_t{105}),
+                                      fromUnits<S>(std::int64_t{2616})));
+  ASSERT_GE(info.count, 1);
+  for (int i = 0; i < info.count; ++i) {
+    EXPECT_GE(static_cast<double>(info.points[i].pointB.y), -1024 - 1e-5);
+    EXPECT_LE(static_cast<double>(info.points[i].pointA.y), 1e-5);
+    EXPECT_NEAR(static_cast<double>(info.points[i].pointA.y - info.points[i].pointB.y), 0, 1e-5);
+  }
+}
+
+// Rounded, an edge of one unit is turned by any angle against its normal. It seemed to lie opposite the other
+// tip, and its normal was taken for the way there: 0.24 rad and 28 mm off.
+TYPED_TEST(DegenerateShapesTest, TipsOfTwoSliversAreApartByTheWayFromOneToTheOther) {
+  using S = TypeParam;
+  const Shape<S> sliver = polyShapeRaw<S>(
+      BodyId(), std::vector<Vector<S>>{fromUnits<S>({-1, -1}), fromUnits<S>({1002438656, -59649}),
+                                       fromUnits<S>({0, -1})});
+  const auto turned = [](std::int64_t angle) { return forAngle(fromUnits<S>(angle)); };
+  const std::int64_t at = 1936946035;
+  const CollisionInfo<S> info =
+      TestFixture::touch(sliver, Transform<S>::rigid(fromUnits<S>({at, at}), rperp(turned(at))), sliver,
+                         Transform<S>::rigid(fromUnits<S>({2 * at, 2 * at}), perp(turned(2096329587))), S(1));
+  ASSERT_GE(info.count, 1);
+  const double apart = static_cast<double>(dot(info.points[0].pointB - info.points[0].pointA, info.normal));
+  EXPECT_NEAR(apart, at * 0x1p-32 * 1.4142135623730951, 1e-8);
 }
 
 TYPED_TEST(DegenerateShapesTest, BladesFarBeforeEachOthersTipsDoNotTouch) {

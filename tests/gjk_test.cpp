@@ -265,6 +265,22 @@ TEST(GjkDoubleTest, EpaIsNotTurnedInsideOutByCornersInOneLine) {
   const ClosestPoints<double> found = gjk<double>(pair, 0, Vector<double>(), nullptr);
   EXPECT_NEAR(found.distance, -127.89629997004306, 1e-9);
 }
+
+// All corners of the difference are within rounding of one line through the corner found last, which left a
+// polygon without edges.
+TEST(GjkDoubleTest, EpaEndsWhereAllCornersAreInOneLine) {
+  const double unit = 0x1p-32;
+  const std::vector<Vector<double>> blade = {
+      {-1.5463256845250726, -unit}, {3.2780226320028305e-06, 0}, {1.5463256845250726, unit}};
+  const Placement<double> a(polyShapeRaw<double>(BodyId(), blade), Transform<double>());
+  const Placement<double> b(segmentShape<double>(BodyId(), {0, 0}, {unit, 0}), Transform<double>());
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  for (const std::uint32_t start : {0u, 0x02000000u}) {
+    ClosestPoints<double> found;
+    ASSERT_NO_THROW(found = gjk<double>(pair, start, Vector<double>(), nullptr)) << start;
+    EXPECT_NEAR(found.distance, 0, 2 * unit) << start;
+  }
+}
 #endif
 
 // MIS section 13, SameVertices.

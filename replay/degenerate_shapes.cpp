@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "support/degenerate_shapes.h"
+#include "degenerate_shapes.h"
 
 #include <cstring>
 #include <vector>
