@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Time per pair of the narrow phase, beside Chipmunk's on the same pairs. Each run goes through 256 pairs in
-// turn, so that branches are guessed as badly as in a scene.
+// turn, so that branches are guessed as badly as in a scene. The last kind are the pairs of the degenerate
+// library: what the worst that is known costs.
 #include <benchmark/benchmark.h>
 #include <chipmunk/chipmunk.h>
 #include <chipmunk/chipmunk_structs.h>
@@ -13,6 +14,7 @@
 #include <samestep/poly_shape.h>
 #include <samestep/segment_shape.h>
 
+#include "degenerate_shapes.h"
 #include "support/random.h"
 
 namespace samestep {
@@ -20,15 +22,28 @@ namespace {
 
 constexpr int kPairs = 256;
 
-enum class Kind { circles, circleOnSegment, circleOnBox, boxOnSegment, restingBoxes, deepBoxes, hexagons };
+enum class Kind {
+  circles,
+  circleOnSegment,
+  circleOnBox,
+  boxOnSegment,
+  restingBoxes,
+  deepBoxes,
+  hexagons,
+  degenerate
+};
 
-/// How two shapes stand: the second at `place`, turned by `angle`, on the first at the origin.
+/// How two shapes stand: the second at `place`, turned by `angle`, on the first at `firstPlace`.
 struct Stand {
   Vector<double> place;
   double angle = 0;
+  Vector<double> firstPlace{};
+  double firstAngle = 0;
 };
 
-Stand standOf(Kind kind, Random& random) {
+const NastyPair& nastyPair(int i) { return nastyPairs()[static_cast<std::size_t>(i) % nastyPairs().size()]; }
+
+Stand standOf(Kind kind, int i, Random& random) {
   const double x = random.number<double>(-1, 1), little = random.number<double>(0, 1) / 64;
   switch (kind) {
     case Kind::circles:
@@ -44,6 +59,11 @@ Stand standOf(Kind kind, Random& random) {
     case Kind::deepBoxes:
     case Kind::hexagons:
       return {{x / 2, random.number<double>(0, 1)}, random.number<double>(-3, 3)};
+    case Kind::degenerate: {
+      const NastyPair& pair = nastyPair(i);
+      return {fromUnits<double>(pair.positionB), fromUnits<double>(pair.angleB),
+              fromUnits<double>(pair.positionA), fromUnits<double>(pair.angleA)};
+    }
   }
   return {};
 }
@@ -53,7 +73,7 @@ std::vector<Vector<double>> hexagon() {
 }
 
 template <Scalar S>
-Shape<S> shapeOf(Kind kind, bool first) {
+Shape<S> shapeOf(Kind kind, int i, bool first) {
   const S half = ratio<S>(1, 2);
   switch (kind) {
     case Kind::circles:
@@ -72,6 +92,10 @@ Shape<S> shapeOf(Kind kind, bool first) {
       for (const Vector<double>& v : hexagon()) points.push_back({S(v.x), S(v.y)});
       return polyShape<S>(BodyId(), points);
     }
+    case Kind::degenerate: {
+      const NastyPair& pair = nastyPair(i);
+      return makeNasty<S>(nastyShapes()[static_cast<std::size_t>(first ? pair.shapeA : pair.shapeB)]);
+    }
   }
   return {};
 }
@@ -84,10 +108,13 @@ void collideOurs(benchmark::State& state) {
   std::vector<std::unique_ptr<Placement<S>>> placed;
   std::vector<CollisionId> ids(kPairs, 0);
   for (int i = 0; i < kPairs; ++i) {
-    const Stand stand = standOf(kind, random);
-    placed.push_back(std::make_unique<Placement<S>>(shapeOf<S>(kind, true), Transform<S>()));
-    placed.push_back(std::make_unique<Placement<S>>(
-        shapeOf<S>(kind, false), Transform<S>::rigid({S(stand.place.x), S(stand.place.y)}, S(stand.angle))));
+    const Stand stand = standOf(kind, i, random);
+    const auto place = [&](bool first, const Vector<double>& at, double angle) {
+      placed.push_back(std::make_unique<Placement<S>>(shapeOf<S>(kind, i, first),
+                                                      Transform<S>::rigid({S(at.x), S(at.y)}, S(angle))));
+    };
+    place(true, stand.firstPlace, stand.firstAngle);
+    place(false, stand.place, stand.angle);
   }
   std::size_t i = 0;
   for (auto _ : state) {
@@ -98,8 +125,8 @@ void collideOurs(benchmark::State& state) {
   }
 }
 
-cpShape* chipmunkShape(Kind kind, bool first, cpBody* body) {
-  const Shape<double> shape = shapeOf<double>(kind, first);
+cpShape* chipmunkShape(Kind kind, int i, bool first, cpBody* body) {
+  const Shape<double> shape = shapeOf<double>(kind, i, first);
   std::vector<cpVect> points;
   for (const Vector<double>& v : shape.vertices()) points.push_back(cpv(v.x, v.y));
   switch (shape.type()) {
@@ -118,14 +145,13 @@ void collideChipmunk(benchmark::State& state) {
   Random random(7);
   std::vector<cpShape*> shapes;
   for (int i = 0; i < kPairs; ++i) {
-    const Stand stand = standOf(kind, random);
+    const Stand stand = standOf(kind, i, random);
     for (const bool first : {true, false}) {
       cpBody* body = cpBodyNew(1, 1);
-      if (!first) {
-        cpBodySetPosition(body, cpv(stand.place.x, stand.place.y));
-        cpBodySetAngle(body, stand.angle);
-      }
-      shapes.push_back(chipmunkShape(kind, first, body));
+      const Vector<double>& at = first ? stand.firstPlace : stand.place;
+      cpBodySetPosition(body, cpv(at.x, at.y));
+      cpBodySetAngle(body, first ? stand.firstAngle : stand.angle);
+      shapes.push_back(chipmunkShape(kind, i, first, body));
       cpShapeCacheBB(shapes.back());
     }
   }
@@ -143,7 +169,7 @@ void collideChipmunk(benchmark::State& state) {
 }
 
 void allKinds(benchmark::internal::Benchmark* bench, bool warm) {
-  for (int kind = 0; kind <= static_cast<int>(Kind::hexagons); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(Kind::degenerate); ++kind) {
     bench->Args({kind, 0});
     if (warm && kind >= static_cast<int>(Kind::boxOnSegment)) bench->Args({kind, 1});
   }

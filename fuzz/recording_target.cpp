@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Recordings from bytes, with the checksum made good: refused with a reason, or read to the end, replayed for
-// some steps without any overflow.
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
+// Recordings from bytes, with revision and checksum made good: refused with a reason, or read to the end,
+// replayed for some steps without any overflow.
 #include <samestep/named_handlers.h>
 #include <samestep/recording.h>
 #include <samestep/replay.h>
@@ -12,6 +9,7 @@
 
 #include "check.h"
 #include "input.h"
+#include "mend.h"
 #include "world_bytes.h"
 
 namespace samestep::fuzz {
@@ -21,14 +19,6 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// Replayed of most recordings, and of one in eight.
 constexpr std::uint64_t kTicks = 3, kMoreTicks = 16;
-
-void mendChecksum(Bytes& bytes) {
-  if (bytes.size() < 8) return;
-  const std::uint64_t checksum = XXH3_64bits(bytes.data(), bytes.size() - 8);
-  for (unsigned i = 0; i < 8; ++i) {
-    bytes[bytes.size() - 8 + i] = static_cast<std::uint8_t>(checksum >> (8 * i));
-  }
-}
 
 template <Scalar S>
 Wiring<S> wiring() {
@@ -75,7 +65,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Bytes bytes(data, data + size);
   const std::uint64_t ticks = (mixed(data, size) & 7) == 0 ? kMoreTicks : kTicks;
   // As it came in one of eight.
-  if (size > 0 && data[size - 1] % 8 != 0) mendChecksum(bytes);
+  if (size > 0 && data[size - 1] % 8 != 0) {
+    mendRevision(bytes);
+    mendChecksum(bytes);
+  }
   try {
     if (recordingInfo(bytes).scalar == ScalarKind::float64) {
       run<double>(bytes, ticks);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Scenes from text: refused with file, place and reason, or a world that can be stepped without any overflow.
+// Scenes from text, or by formula ("soup:100"): refused with file, place and reason, or a world that can be
+// stepped without any overflow.
 #include <samestep/scene.h>
 
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,8 +20,12 @@ constexpr std::uint32_t kMostBodies = 64;
 /// Reading is the business of this target: most scenes are stepped once, one in eight more often.
 constexpr int kSteps = 1, kMoreSteps = 4;
 
+void expectNamed(const SceneError& error, const std::string& file) {
+  expect(std::strncmp(error.what(), file.c_str(), file.size()) == 0, "an error names the file");
+}
+
 template <Scalar S>
-std::vector<std::uint64_t> run(const SceneSource& source, int steps) {
+std::vector<std::uint64_t> run(const SceneSource& source, const std::string& file, int steps) {
   std::vector<std::uint64_t> hashes;
   try {
     Scene<S> scene(source);
@@ -33,12 +39,20 @@ std::vector<std::uint64_t> run(const SceneSource& source, int steps) {
       hashes.push_back(scene.space().hash());
     }
   } catch (const SceneError& error) {
-    expect(std::strncmp(error.what(), "fuzz.json", 9) == 0, "an error names the file");
+    expectNamed(error, file);
   } catch (const Error&) {
     // What a command or a step refuses.
   }
   return hashes;
 }
+
+/// Whether a text may name a scene by formula, and no file.
+bool mayBeFormula(std::string_view text) {
+  return text.find(':') != std::string_view::npos && text.find_first_of("{[\"./\\") == std::string_view::npos;
+}
+
+/// More digits make a world that takes its time and shows nothing new.
+bool isSmall(std::string_view formula) { return formula.size() <= formula.find(':') + 3; }
 
 }  // namespace
 }  // namespace samestep::fuzz
@@ -49,17 +63,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   // A scene may name other files; those are the reader's business, and here a way out.
   if (text.find("csv") != std::string_view::npos || text.find("\\u") != std::string_view::npos) return 0;
+  const bool formula = mayBeFormula(text);
+  const std::string file = formula ? std::string(text.substr(0, text.find('\0'))) : "fuzz.json";
   const int steps = (mixed(data, size) & 7) == 0 ? kMoreSteps : kSteps;
   try {
-    const SceneSource source = SceneSource::fromText(text, "fuzz.json");
+    const SceneSource source = formula ? SceneSource::find(text) : SceneSource::fromText(text, file);
+    if (formula && !isSmall(text)) return 0;
     if (size % 2 == 0) {
-      expect(run<CheckedFixed>(source, steps) == run<Fixed>(source, steps),
+      expect(run<CheckedFixed>(source, file, steps) == run<Fixed>(source, file, steps),
              "Fixed does what CheckedFixed does");
     } else {
-      run<double>(source, steps);
+      run<double>(source, file, steps);
     }
   } catch (const SceneError& error) {
-    expect(std::strncmp(error.what(), "fuzz.json", 9) == 0, "an error names the file");
+    expectNamed(error, file);
   }
   return 0;
 }

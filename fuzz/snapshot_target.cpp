@@ -2,9 +2,6 @@
 // Worlds from bytes, bare or as a snapshot, whose size and checksum are made good: refused with a reason, or
 // one that a Space can have, that is written back to the same bytes, and that can be stepped without any
 // overflow.
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <samestep/snapshot.h>
 
 #include <algorithm>
@@ -13,6 +10,7 @@
 
 #include "check.h"
 #include "input.h"
+#include "mend.h"
 #include "world_bytes.h"
 
 namespace samestep::fuzz {
@@ -51,17 +49,6 @@ std::vector<std::uint64_t> run(Bytes bytes, int steps) {
   return hashes;
 }
 
-/// Size and checksum of a snapshot.
-void mendFrame(std::vector<std::uint8_t>& bytes) {
-  constexpr std::size_t kSizeAt = 20, kChecksum = 8;
-  if (bytes.size() < kSizeAt + 2 * kChecksum) return;
-  const auto put = [&](std::size_t at, std::uint64_t value) {
-    for (unsigned i = 0; i < 8; ++i) bytes[at + i] = static_cast<std::uint8_t>(value >> (8 * i));
-  };
-  put(kSizeAt, bytes.size());
-  put(bytes.size() - kChecksum, XXH3_64bits(bytes.data(), bytes.size() - kChecksum));
-}
-
 template <Scalar S>
 void loadWhole(Bytes bytes, OtherRevision otherRevision) {
   Space<S> space;
@@ -97,8 +84,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Bytes bytes(data + 1, size - 1);
   if ((data[0] & 2) != 0) {
     std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
-    if ((data[0] & 4) == 0) mendFrame(whole);
     const OtherRevision other = (data[0] & 8) != 0 ? OtherRevision::refuse : OtherRevision::takeStateOnly;
+    if ((data[0] & 4) == 0) {
+      if (other == OtherRevision::refuse) mendRevision(whole);
+      mendSize(whole);
+      mendChecksum(whole);
+    }
     (data[0] & 1) != 0 ? loadWhole<double>(whole, other) : loadWhole<Fixed>(whole, other);
     return 0;
   }

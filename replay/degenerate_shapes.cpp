@@ -44,6 +44,11 @@ constexpr RawPoint kBlade[] = {{-64 * kOne, 0}, {0, -3}, {64 * kOne, 0}, {0, 3}}
 constexpr RawPoint kOffCentre[] = {
     {200 * kOne + kOne / 8, 0}, {200 * kOne, kOne / 8}, {200 * kOne - kOne / 8, 0}, {200 * kOne, -kOne / 8}};
 
+constexpr RawPoint kInsideOut[] = {{32, 32}, {2611340116437, -1}, {78, 32}};
+constexpr RawPoint kThorn[] = {{-1, -1}, {1002438656, -59649}, {0, -1}};
+constexpr RawPoint kSpindle[] = {{-1, -8430215495680}, {32, 78}, {32, 2611340116437}, {-1, 32}};
+constexpr RawPoint kAslant[] = {{0, 2465}, {92, 1024 * kOne - 86}};
+
 /// A convex arc of 32 vertices, each edge turned by less than the last: no two are alike in length.
 constexpr RawPoint kArc[] = {
     {0, 0},
@@ -116,6 +121,10 @@ enum Number {
   kOffCentrePoly,
   kArcPoly,
   kWheelPoly,
+  kInsideOutPoly,
+  kThornPoly,
+  kSpindlePoly,
+  kAslantSegment,
 };
 
 constexpr NastyShape kShapes[] = {
@@ -143,6 +152,10 @@ constexpr NastyShape kShapes[] = {
     {"off centre", "a small square 200 m from its body", ShapeType::poly, 0, kOffCentre},
     {"arc", "edges that turn by 2^-15 rad from one to the next", ShapeType::poly, 0, kArc},
     {"wheel", "32 vertices on a circle of a metre", ShapeType::poly, 0, kWheel},
+    {"inside out", "608 m long, 46 units wide: rounding turns it inside out", ShapeType::poly, 0, kInsideOut},
+    {"thorn", "0.23 m long, its short edge one unit", ShapeType::poly, 0, kThorn},
+    {"spindle", "2570 m long, 33 units wide, edges in line two by two", ShapeType::poly, 64, kSpindle},
+    {"aslant", "a segment that leans by 92 units in a kilometre", ShapeType::segment, 0, kAslant},
 };
 
 constexpr RawPoint kZero = {0, 0};
@@ -289,6 +302,33 @@ constexpr NastyPair kPairs[] = {
      kOffCentrePoly,
      {kOne / 16, 0},
      kOne,
+     true},
+    {"moon round a tip",
+     "the tip of a sliver inside a circle",
+     kInsideOutPoly,
+     {16, 16},
+     78,
+     kMoon,
+     {-1786706394652, 15},
+     0,
+     true},
+    {"thorn before thorn",
+     "tips apart, edges of one unit towards each other",
+     kThornPoly,
+     {1936946035, 1936946035},
+     3 * kQuarter + 1936946035,
+     kThornPoly,
+     {2 * 1936946035LL, 2 * 1936946035LL},
+     kQuarter + 2096329587,
+     false},
+    {"spindle along a line",
+     "all edges in one line to some units",
+     kSpindlePoly,
+     {0, 13},
+     0,
+     kAslantSegment,
+     {105, 2616},
+     2 * kQuarter,
      true},
     {"arc on plank",
      "many nearly parallel edges",

@@ -8,8 +8,8 @@
 
 namespace samestep {
 
-// Shapes and poses that break collision routines, by name: for tests, fuzzing and benchmarks. All numbers are
-// in units of 2^-32 m, so that every scalar holds them exactly.
+// Shapes and poses that break collision routines, by name: for tests, fuzzing, the envelope and benchmarks.
+// All numbers are in units of 2^-32 m, so that every scalar holds them exactly.
 
 struct RawPoint {
   std::int64_t x;

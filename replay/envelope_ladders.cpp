@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The ladders: worlds that a number makes harder, and when they have failed.
+#include <algorithm>
+
 #include <samestep/circle_shape.h>
 #include <samestep/poly_shape.h>
 
+#include "degenerate_shapes.h"
 #include "envelope.h"
 #include "require_ieee.h"
 
@@ -39,6 +42,22 @@ class Trial {
     body.setVelocity(velocity);
     Shape<S> shape = circleShape<S>({}, radius, Vector<S>());
     shape.setDensity(S(1));
+    return add(body, shape, ratio<S>(6, 10));
+  }
+
+  /// A static body of a degenerate shape.
+  void addStatic(const Shape<S>& shape, const Vector<S>& position, S angle) {
+    Body<S> body = Body<S>::fixedInPlace();
+    body.setPosition(position);
+    body.setAngle(angle);
+    add(body, shape, ratio<S>(6, 10));
+  }
+  /// A body of 1 kg, with the moment of its shape where that is one a body may have.
+  BodyId addFree(const Shape<S>& shape, const Vector<S>& position, S angle) {
+    Body<S> body(S(1), max(toScalar<S>(shape.massInfo().unitMoment), ratio<S>(1, 1 << 10)));
+    body.setCenterOfMass(shape.centerOfMass());
+    body.setAngle(angle);
+    body.setPosition(position);
     return add(body, shape, ratio<S>(6, 10));
   }
 
@@ -142,6 +161,54 @@ bool bulletsHoldAt(const Setting& setting, int speed) {
   });
 }
 
+/// Whether a shape may be that of a body that moves.
+bool mayMove(const NastyShape& shape) { return makeNasty<Fixed>(shape).extent() <= Fixed(kMaxDynamicExtent); }
+
+template <Scalar S>
+bool shapeRests(const Setting& setting, const NastyShape& nasty) {
+  if (!mayMove(nasty)) return true;
+  Trial<S> trial(setting, {S(0), S(-10)});
+  trial.addStaticBox({S(0), S(-1)}, S(2000), S(2));
+  const Shape<S> shape = makeNasty<S>(nasty);
+  const S bottom = boundingBox(shape, Transform<S>()).bottom;
+  const BodyId id = trial.addFree(shape, {S(0), ratio<S>(1, 10) - bottom}, S(0));
+  return trial.stand(10, [&] {
+    const BB<S> box = boundingBox(shape, trial.body(id).transform());
+    return box.bottom >= -ratio<S>(1, 20) && box.bottom <= ratio<S>(1, 10);
+  });
+}
+
+/// One of the two is held, the other free; so is A where B is too large to move.
+template <Scalar S>
+bool pairParts(const Setting& setting, const NastyPair& pair) {
+  constexpr int kSeconds = 2;
+  const NastyShape &nastyA = nastyShapes()[static_cast<std::size_t>(pair.shapeA)],
+                   &nastyB = nastyShapes()[static_cast<std::size_t>(pair.shapeB)];
+  const Shape<S> shapeA = makeNasty<S>(nastyA), shapeB = makeNasty<S>(nastyB);
+  const Vector<S> placeA = fromUnits<S>(pair.positionA), placeB = fromUnits<S>(pair.positionB);
+  const S angleA = fromUnits<S>(pair.angleA), angleB = fromUnits<S>(pair.angleB);
+  Trial<S> trial(setting, {});
+  const bool freeB = mayMove(nastyB);
+  if (!freeB && !mayMove(nastyA)) return true;
+  trial.addStatic(freeB ? shapeA : shapeB, freeB ? placeA : placeB, freeB ? angleA : angleB);
+  const BodyId id = trial.addFree(freeB ? shapeB : shapeA, freeB ? placeB : placeA, freeB ? angleB : angleA);
+  S most = S(0);
+  for (int step = 0; step < kSeconds * kStepsPerSecond; ++step) {
+    const Vector<S> before = trial.body(id).worldCenter();
+    trial.run(1);
+    most = max(most, length(trial.body(id).worldCenter() - before) * S(kStepsPerSecond));
+  }
+  return most <= S(10);
+}
+
+/// Whether each of the first `rung` holds, as holds(S(), thing) has it.
+template <class Thing, class Holds>
+bool firstHold(const Setting& setting, std::span<const Thing> things, int rung, Holds&& holds) {
+  return std::all_of(things.begin(), things.begin() + rung, [&](const Thing& thing) {
+    return inScalarOf(setting, [&](auto scalar) { return holds(scalar, thing); });
+  });
+}
+
 constexpr int kTopSpeed = 1024;
 constexpr const char* kBulletTrial =
     "16 bullets of 0.1 m radius fly at a static wall, each starting 1/16 of a step's way farther off than "
@@ -150,7 +217,7 @@ constexpr const char* kBulletTrial =
 constexpr const char* kBulletFails =
     "a second after the impact the centre of any is in the wall or beyond it";
 
-constexpr Ladder kLadders[] = {
+const Ladder kLadders[] = {
     {"stack", "boxes in a stack that stands for 10 s",
      "boxes of 1 m and 1 kg stand on each other, alternately 1 cm to the left and to the right",
      "after any of 10 s a box has turned by more than 0.2 rad, is more than 0.5 m aside, or has sunk by more "
@@ -174,6 +241,27 @@ constexpr Ladder kLadders[] = {
      bulletsHoldAt<4>},
     {"bullet-6cm", "m/s that a wall of 6.25 cm stops", kBulletTrial, kBulletFails, kTopSpeed,
      bulletsHoldAt<1>},
+    {"shapes", "degenerate shapes, in turn, that rest on a floor for 10 s",
+     "the shapes of replay/degenerate_shapes.cpp one by one, each alone on a body of 1 kg, fall from 10 cm; "
+     "those "
+     "too large for a body that moves count as resting",
+     "after any of 10 s one is more than 5 cm in the floor, or more than 10 cm above it",
+     static_cast<int>(nastyShapes().size()),
+     [](const Setting& setting, int rung) {
+       return firstHold(setting, nastyShapes(), rung, [&](auto scalar, const NastyShape& shape) {
+         return shapeRests<decltype(scalar)>(setting, shape);
+       });
+     }},
+    {"pairs", "degenerate pairs, in turn, that part at 10 m/s at most",
+     "the pairs of replay/degenerate_shapes.cpp one by one, many of them as deep in each other as can be, "
+     "one "
+     "held and the other a free body of 1 kg without gravity; two that are too large to move count as parted",
+     "in any step of 2 s the free one moves faster", static_cast<int>(nastyPairs().size()),
+     [](const Setting& setting, int rung) {
+       return firstHold(setting, nastyPairs(), rung, [&](auto scalar, const NastyPair& pair) {
+         return pairParts<decltype(scalar)>(setting, pair);
+       });
+     }},
 };
 
 }  // namespace
