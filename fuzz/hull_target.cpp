@@ -211,7 +211,6 @@ void checkMeasures(const Shape<Fixed>& shape) {
   expect(sign(shape.massInfo().area) != 0 || density == Fixed(0), "without area there is no density");
 }
 
-/// What a factory makes of a plan: refused with a type, or a shape that is whole.
 /// A copy is the same; with anything changed it is another.
 void checkSame(const Shape<Fixed>& shape) {
   expect(Shape<Fixed>(shape) == shape, "a copy is the same");
@@ -234,6 +233,7 @@ void checkSame(const Shape<Fixed>& shape) {
   expectOther([&](Shape<Fixed>& other) { other.setMass(Fixed(5)); });
 }
 
+/// What a factory makes of a plan: refused with a type, or a shape that is whole.
 void checkShape(const ShapePlan& plan) {
   const auto shape = build<Fixed>(plan);
   const auto checked = build<CheckedFixed>(plan);
