@@ -40,8 +40,9 @@ int run(const Options& options) {
 }  // namespace
 
 void addEnvelope(CLI::App& app, int& result) {
-  CLI::App* word = app.add_subcommand(
-      "envelope", "Find how high a stack, how unequal a pair of masses, how fast a bullet each solver bears");
+  CLI::App* word = app.add_subcommand("envelope",
+                                      "Find how high a stack, how unequal masses, how fast a bullet, which "
+                                      "degenerate shapes each solver bears");
   auto options = std::make_shared<Options>();
   std::vector<std::string> names;
   for (const Ladder& ladder : ladders()) names.emplace_back(ladder.name);
