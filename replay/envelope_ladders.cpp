@@ -45,7 +45,7 @@ class Trial {
     return add(body, shape, ratio<S>(6, 10));
   }
 
-  /// A static body of a degenerate shape.
+  /// A static body of any shape.
   void addStatic(const Shape<S>& shape, const Vector<S>& position, S angle) {
     Body<S> body = Body<S>::fixedInPlace();
     body.setPosition(position);
@@ -243,8 +243,7 @@ const Ladder kLadders[] = {
      bulletsHoldAt<1>},
     {"shapes", "degenerate shapes, in turn, that rest on a floor for 10 s",
      "the shapes of replay/degenerate_shapes.cpp one by one, each alone on a body of 1 kg, fall from 10 cm; "
-     "those "
-     "too large for a body that moves count as resting",
+     "those too large for a body that moves count as resting",
      "after any of 10 s one is more than 5 cm in the floor, or more than 10 cm above it",
      static_cast<int>(nastyShapes().size()),
      [](const Setting& setting, int rung) {
@@ -254,8 +253,8 @@ const Ladder kLadders[] = {
      }},
     {"pairs", "degenerate pairs, in turn, that part at 10 m/s at most",
      "the pairs of replay/degenerate_shapes.cpp one by one, many of them as deep in each other as can be, "
-     "one "
-     "held and the other a free body of 1 kg without gravity; two that are too large to move count as parted",
+     "one held and the other a free body of 1 kg without gravity; two that are too large to move count as "
+     "parted",
      "in any step of 2 s the free one moves faster", static_cast<int>(nastyPairs().size()),
      [](const Setting& setting, int rung) {
        return firstHold(setting, nastyPairs(), rung, [&](auto scalar, const NastyPair& pair) {
