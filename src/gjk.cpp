@@ -116,6 +116,21 @@ ClosestPoints<S> closestPoints(const Edge<S>& edge) {
   return result;
 }
 
+/// By how much a direction separates the shapes, m.
+template <Scalar S>
+S separationAlong(const SupportPair<S>& pair, const Vector<S>& n) {
+  return dot(pair.farthest(-n).ab, n);
+}
+
+/// What to answer in double when rounding leads the search away again or in a ring: of two edges the one
+/// whose normal separates more. A corner that seems nearer may lie on an edge that is all but in line with
+/// it.
+template <Scalar S>
+ClosestPoints<S> betterOf(const SupportPair<S>& pair, const Edge<S>& before, const Edge<S>& now) {
+  const ClosestPoints<S> first = closestPoints(before), second = closestPoints(now);
+  return separationAlong(pair, second.normal) > separationAlong(pair, first.normal) ? second : first;
+}
+
 /// Whether the edge from v0 to p, and not the one from p to v1, holds the point of the triangle nearest to
 /// the origin, which lies outside of the triangle or on its rim. Decided by signs alone: a point outside of
 /// one edge only is nearest to that edge; one outside of both is nearest to the edge that leads towards it.
@@ -163,9 +178,8 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
     if constexpr (!kIsFixed<S>) {
       const Reach<S> reach(edge);
       if (iteration > 1 && reach.isFartherThan(least)) {
-        return warm ? gjk(pair, 0, axis, stats) : closestPoints(before);
+        return warm ? gjk(pair, 0, axis, stats) : betterOf(pair, before, edge);
       }
-      before = edge;
       least = reach;
     }
     const bool late = stats != nullptr && iteration >= kWarnGjkIterations;
@@ -177,6 +191,9 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
       // ring.
       if (warm && !nothingNearer) return gjk(pair, 0, axis, stats);
       if (late) ++stats->highGjkIterations;
+      if constexpr (!kIsFixed<S>) {
+        if (!nothingNearer) return betterOf(pair, before, edge);
+      }
       return closestPoints(edge);
     }
     if (leftOf(p.ab, edge.v0.ab, Vector<S>()) && leftOf(edge.v1.ab, p.ab, Vector<S>())) {
@@ -185,6 +202,7 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
       if (late) ++stats->highGjkToEpaIterations;
       return epa(pair, edge.v0, p, edge.v1, stats);
     }
+    if constexpr (!kIsFixed<S>) before = edge;
     (nearerToFirst(edge, p) ? edge.v1 : edge.v0) = p;
   }
 }

@@ -266,6 +266,26 @@ TEST(GjkDoubleTest, EpaIsNotTurnedInsideOutByCornersInOneLine) {
   EXPECT_NEAR(found.distance, -127.89629997004306, 1e-9);
 }
 
+// A corner lies on an edge that is all but in line with it, and the search goes to and fro between them. The
+// corner at which it gave up lies 1e-10 m from the origin: the way there is along the edge, not across it, so
+// that it separated the shapes by -1 m.
+TEST(GjkDoubleTest, OfAnEdgeAndACornerOnItTheEdgeSeparates) {
+  const double unit = 0x1p-32;
+  const std::vector<Vector<double>> flat = {{-1, 0}, {1, 0}, {0, unit}};
+  const std::vector<Vector<double>> large = {
+      {-88, 88}, {-unit, unit}, {-2.4680048227310181e-08, 3166.8750009145588}};
+  const Vector<double> turn = forAngle(-88.0);
+  const Placement<double> a(polyShapeRaw<double>(BodyId(), flat), Transform<double>::rigid({0, 88}, -turn));
+  const Placement<double> b(polyShapeRaw<double>(BodyId(), large),
+                            Transform<double>::rigid({0, 88}, perp(turn)));
+  const SupportPair<double> pair{SupportShape<double>(*a), SupportShape<double>(*b)};
+  for (const std::uint32_t start : {0u, 0x02000000u, 0x00010201u}) {
+    const ClosestPoints<double> found = gjk<double>(pair, start, Vector<double>(), nullptr);
+    EXPECT_NEAR(found.distance, 0, 1e-8) << start;
+    EXPECT_NEAR(dot(pair.farthest(-found.normal).ab, found.normal), 0, 1e-8) << start;
+  }
+}
+
 // All corners of the difference are within rounding of one line through the corner found last, which left a
 // polygon without edges.
 TEST(GjkDoubleTest, EpaEndsWhereAllCornersAreInOneLine) {
