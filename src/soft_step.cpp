@@ -13,8 +13,9 @@ Softness<S> makeSoftness(S hertz, S dampingRatio, S substep) {
   if (hertz == S(0) || a1 == S(0)) return {S(0), S(1), S(0)};
   const S a2 = substep * omega * a1;
   const S a3 = reciprocal(S(1) + a2);
-  // More, in substeps of less than 60 us, would leave the range.
-  return {min(omega / a1, S(1 << 14)), a2 * a3, a3};
+  // More, in substeps of less than 60 us or without damping, would leave the range.
+  constexpr S kMost = S(1 << 14);
+  return {omega < a1 * kMost ? omega / a1 : kMost, a2 * a3, a3};
 }
 
 template <Scalar S>
