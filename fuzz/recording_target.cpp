@@ -17,7 +17,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Replayed of most recordings, and of one in eight.
+/// Reading is the business of this target: of half of the recordings so much is replayed, of one in eight more.
 constexpr std::uint64_t kTicks = 3, kMoreTicks = 16;
 
 template <Scalar S>
@@ -45,7 +45,7 @@ std::vector<std::uint64_t> run(const Bytes& bytes, std::uint64_t ticks) {
     }
     expect(steps == reader.ticks(), "the steps are as many as the end says");
     const Settings<S>& settings = reader.initialWorld().settings;
-    if (settings.iterations > 20 || settings.substeps > 8) return hashes;
+    if (ticks == 0 || settings.iterations > 20 || settings.substeps > 8) return hashes;
     Replay<S> replay(bytes, wiring<S>(), kFuzzLimits);
     while (replay.tick() < ticks && replay.step()) hashes.push_back(replay.space().hash());
   } catch (const FormatError& error) {
@@ -63,7 +63,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace samestep;
   using namespace samestep::fuzz;
   Bytes bytes(data, data + size);
-  const std::uint64_t ticks = (mixed(data, size) & 7) == 0 ? kMoreTicks : kTicks;
+  const std::uint64_t choice = mixed(data, size) & 7;
+  const std::uint64_t ticks = choice == 0 ? kMoreTicks : choice < 4 ? kTicks : 0;
   // As it came in one of eight.
   if (size > 0 && data[size - 1] % 8 != 0) {
     mendRevision(bytes);
