@@ -17,7 +17,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Reading is the business of this target: of half of the recordings so much is replayed, of one in eight more.
+/// Reading is the business of this target: of half of the recordings so much is replayed, of one in eight
+/// more.
 constexpr std::uint64_t kTicks = 3, kMoreTicks = 16;
 
 template <Scalar S>
