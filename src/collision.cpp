@@ -145,6 +145,34 @@ std::array<int, 2> edgesAt(const PlacedShape<S>& shape, int vertex) {
   return {vertex, vertex + 1 < shape.count ? vertex + 1 : 0};
 }
 
+/// Clips the edges at the vertices that are nearest to or farthest towards each other, until two give a point
+/// that lies on both shapes, as deep as they overlap.
+/// @param onA, onB  the vertices farthest along the normal and against it
+template <Scalar S>
+bool touchOtherEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest,
+                     int onA, int onB, S margin, CollisionInfo<S>& info) {
+  const Vector<S> n = closest.normal;
+  const S deepest = closest.distance - a.radius - b.radius - kFlat<S>;
+  const auto named = [&](int shift) { return static_cast<int>(closest.id >> shift & 0xff); };
+  for (const int vertexA : {named(24), named(8), onA}) {
+    for (const int vertexB : {named(16), named(0), onB}) {
+      for (const int edgeA : edgesAt(a, vertexA)) {
+        for (const int edgeB : edgesAt(b, vertexB)) {
+          clip(edgeTo(a, edgeA), a.radius, edgeTo(b, edgeB), b.radius, n, margin, info);
+          bool onBoth = info.count > 0;
+          for (int i = 0; i < info.count; ++i) {
+            const Vector<S> apart = info.points[i].pointB - info.points[i].pointA;
+            onBoth = onBoth && dot(apart, n) >= deepest && abs(cross(apart, n)) <= kFlat<S>;
+          }
+          if (onBoth) return true;
+          info.count = 0;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 /// Two shapes with edges, by the search for their nearest features.
 template <Scalar S>
 void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start, S margin,
@@ -157,14 +185,7 @@ void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId 
   clip(edgeAt(a, onA, n), a.radius, edgeAt(b, onB, -n), b.radius, n, margin, info);
   if (info.count > 0 || (closest.vertexA < 0 && closest.vertexB < 0)) [[likely]]
     return;
-  if (!facesTip(a, b, closest)) {
-    for (const int edgeA : edgesAt(a, onA)) {
-      for (const int edgeB : edgesAt(b, onB)) {
-        clip(edgeTo(a, edgeA), a.radius, edgeTo(b, edgeB), b.radius, n, margin, info);
-        if (info.count > 0) return;
-      }
-    }
-  }
+  if (!facesTip(a, b, closest) && touchOtherEdges(a, b, closest, onA, onB, margin, info)) return;
   const bool tipOnA = closest.vertexA >= 0;
   touchTip(a, tipOnA ? closest.vertexA : onA, b, closest.vertexB >= 0 ? closest.vertexB : onB,
            closest.distance, tipOnA, info);

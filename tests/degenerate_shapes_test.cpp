@@ -126,6 +126,32 @@ TYPED_TEST(DegenerateShapesTest, SliverAndSegmentInOneLineTouchWhereBothAre) {
   }
 }
 
+// The segment lies along the longest edge of the polygon, whose vertices below it are a unit farther out. The
+// vertex named nearest was the one at the top, 43 m beyond the end of the segment.
+TYPED_TEST(DegenerateShapesTest, SegmentAlongAnEdgeTouchesItWhereBothAre) {
+  using S = TypeParam;
+  std::vector<Vector<S>> points;
+  for (const RawPoint& p :
+       {RawPoint{-1, -7327119612}, RawPoint{874591712747, 7327}, RawPoint{1019765687664, 883364052277},
+        RawPoint{0, 1019698578800}, RawPoint{-1, 0}}) {
+    points.push_back(fromUnits<S>(p));
+  }
+  const Shape<S> polygon = polyShapeRaw<S>(BodyId(), points);
+  const Shape<S> segment =
+      segmentShape<S>(BodyId(), fromUnits<S>({-9, -71}), fromUnits<S>({0, 834863265259}));
+  for (const CollisionId start : {0u, 0xeu}) {
+    const Placement<S> a(segment, Transform<S>()), b(polygon, Transform<S>());
+    const CollisionInfo<S> info = collide(*a, *b, start);
+    if constexpr (kIsFixed<S>) {
+      EXPECT_GE(info.count, 1);
+    }
+    for (int i = 0; i < info.count; ++i) {
+      EXPECT_LE(static_cast<double>(info.points[i].pointA.y), 194.4);
+      EXPECT_NEAR(static_cast<double>(info.points[i].pointA.y - info.points[i].pointB.y), 0, 1e-5);
+    }
+  }
+}
+
 // Rounded, an edge of one unit is turned by any angle against its normal. It seemed to lie opposite the other
 // tip, and its normal was taken for the way there: 0.24 rad and 28 mm off.
 TYPED_TEST(DegenerateShapesTest, TipsOfTwoSliversAreApartByTheWayFromOneToTheOther) {
