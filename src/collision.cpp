@@ -201,7 +201,7 @@ void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, Col
     const FaceAxis<S> axis = bestFace(a, b, reach, start);
     info.id = axis.id();
     if (axis.separation > reach) return;
-    const bool byFace = axis.separation < -kFlat<S> || facesVertex(a, b, axis) ||
+    const bool byFace = axis.separation < -surelyDeep(extentOf(a, b)) || facesVertex(a, b, axis) ||
                         (axis.separation <= S(0) && facesEdge(a, b, axis));
     if (byFace && touchFace(a, b, axis, margin, info)) return;
     // Corners near each other; thin ones may be far apart where all faces are within rounding of touching.

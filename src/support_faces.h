@@ -136,15 +136,27 @@ FaceAxis<S> searchFaces(const PlacedShape<S>& a, const PlacedShape<S>& b, S reac
   return face == old.face && onB == old.onB ? old : axisOf(face, onB);
 }
 
+/// The extent of two shapes together, m.
+template <Scalar S>
+S extentOf(const PlacedShape<S>& a, const PlacedShape<S>& b) {
+  const BB<S> around = merge(a.box, b.box);
+  return max(around.right - around.left, around.top - around.bottom);
+}
+
+/// Deeper than this, in metres, two shapes overlap, whatever rounding makes of normals: of long shapes, by
+/// which it is multiplied, more.
+template <Scalar S>
+S surelyDeep(S extent) {
+  return max(kFlat<S>, extent * S(0x1p-30));
+}
+
 /// The best of all faces, or the one looked at first if that one separates the shapes by more than `reach`.
 /// @param start  the id of an earlier answer: that face is looked at first
 /// @pre a.count * b.count <= kMaxFacePairs
 template <Scalar S>
 FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, std::uint32_t start) {
-  const BB<S> around = merge(a.box, b.box);
-  const S limit(kLocalReach);
-  const bool local = around.right - around.left < limit && around.top - around.bottom < limit;
-  return local ? searchFaces<LocalWay<S>>(a, b, reach, start) : searchFaces<ExactWay<S>>(a, b, reach, start);
+  return extentOf(a, b) < S(kLocalReach) ? searchFaces<LocalWay<S>>(a, b, reach, start)
+                                         : searchFaces<ExactWay<S>>(a, b, reach, start);
 }
 
 /// Faces shorter than this, in metres, are turned against their normals where vertices are rounded: by 2^-16

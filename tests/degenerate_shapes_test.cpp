@@ -152,6 +152,20 @@ TYPED_TEST(DegenerateShapesTest, SegmentAlongAnEdgeTouchesItWhereBothAre) {
   }
 }
 
+// Beside each other by a micrometre, in one line, 448 m apart: at 16 km the rounding of a normal is more than
+// that, and by its faces one seemed to overlap the other.
+TYPED_TEST(DegenerateShapesTest, LongSliversInOneLineFarApartDoNotTouch) {
+  using S = TypeParam;
+  std::vector<Vector<S>> points;
+  for (const RawPoint& p : {RawPoint{-4225, -67894843015083}, RawPoint{-1, 1}, RawPoint{-1, 1048575999}}) {
+    points.push_back(fromUnits<S>(p));
+  }
+  const Shape<S> sliver = polyShapeRaw<S>(BodyId(), points);
+  const Transform<S> turned(S(-1), S(0), S(0), S(-1), fromUnits<S>(std::int64_t{-4225}),
+                            fromUnits<S>(std::int64_t{1924145349672}));
+  EXPECT_EQ(TestFixture::touch(sliver, Transform<S>(), sliver, turned, S(1)).count, 0);
+}
+
 // Rounded, an edge of one unit is turned by any angle against its normal. It seemed to lie opposite the other
 // tip, and its normal was taken for the way there: 0.24 rad and 28 mm off.
 TYPED_TEST(DegenerateShapesTest, TipsOfTwoSliversAreApartByTheWayFromOneToTheOther) {
