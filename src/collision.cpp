@@ -146,7 +146,7 @@ std::array<int, 2> edgesAt(const PlacedShape<S>& shape, int vertex) {
 }
 
 /// Clips the edges at the vertices that are nearest to or farthest towards each other, until two give a point
-/// that lies on both shapes, as deep as they overlap.
+/// that lies on both shapes, as deep as they overlap. They touch, which rounding may deny by up to kFlat.
 /// @param onA, onB  the vertices farthest along the normal and against it
 template <Scalar S>
 bool touchOtherEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest,
@@ -158,7 +158,7 @@ bool touchOtherEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, const Clo
     for (const int vertexB : {named(16), named(0), onB}) {
       for (const int edgeA : edgesAt(a, vertexA)) {
         for (const int edgeB : edgesAt(b, vertexB)) {
-          clip(edgeTo(a, edgeA), a.radius, edgeTo(b, edgeB), b.radius, n, margin, info);
+          clip(edgeTo(a, edgeA), a.radius, edgeTo(b, edgeB), b.radius, n, margin + kFlat<S>, info);
           bool onBoth = info.count > 0;
           for (int i = 0; i < info.count; ++i) {
             const Vector<S> apart = info.points[i].pointB - info.points[i].pointA;

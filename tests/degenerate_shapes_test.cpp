@@ -152,6 +152,28 @@ TYPED_TEST(DegenerateShapesTest, SegmentAlongAnEdgeTouchesItWhereBothAre) {
   }
 }
 
+// Its own edges are some units too far from the segment, the one that was named ends 988 m before its tip.
+TYPED_TEST(DegenerateShapesTest, SegmentBesideThreeEdgesInOneLineTouchesWhereBothAre) {
+  using S = TypeParam;
+  std::vector<Vector<S>> points;
+  for (const RawPoint& p : {RawPoint{-1, -21500}, RawPoint{0, -8430215495680}, RawPoint{77309411328, 0},
+                            RawPoint{0, 137438955613}, RawPoint{-1, 2424307712}}) {
+    points.push_back(fromUnits<S>(p));
+  }
+  const Vector<S> down(S(0), S(-1));
+  const Shape<S> polygon = polyShapeRaw<S>(BodyId(), points);
+  const Shape<S> segment =
+      segmentShape<S>(BodyId(), fromUnits<S>({0, 2465}), fromUnits<S>({92, 4398046511018}));
+  const Placement<S> a(segment, Transform<S>::rigid(fromUnits<S>({21474775, 173}), down)),
+      b(polygon, Transform<S>::rigid(fromUnits<S>({17201367913, 171}), down));
+  for (const CollisionInfo<S>& info : {collide(*a, *b), collide(*b, *a), collide(*a, *b, 0x1000u)}) {
+    for (int i = 0; i < info.count; ++i) {
+      EXPECT_LE(static_cast<double>(info.points[i].pointB.x), 36.1);
+      EXPECT_NEAR(static_cast<double>(info.points[i].pointA.x - info.points[i].pointB.x), 0, 1e-5);
+    }
+  }
+}
+
 // Beside each other by a micrometre, in one line, 448 m apart: at 16 km the rounding of a normal is more than
 // that, and by its faces one seemed to overlap the other.
 TYPED_TEST(DegenerateShapesTest, LongSliversInOneLineFarApartDoNotTouch) {
