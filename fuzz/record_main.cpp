@@ -2,8 +2,6 @@
 // Makes a recording of an input of the target snapshot or recording, which the program draws, compares and
 // verifies like any other.
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <span>

@@ -38,6 +38,11 @@ class DegenerateShapesTest : public ::testing::Test {
     for (const RawPoint& p : points) vertices.push_back(fromUnits<S>(p));
     return polyShape<S>(BodyId(), vertices, Transform<S>(), radius);
   }
+  static Shape<S> raw(std::initializer_list<RawPoint> points) {
+    std::vector<Vector<S>> vertices;
+    for (const RawPoint& p : points) vertices.push_back(fromUnits<S>(p));
+    return polyShapeRaw<S>(BodyId(), vertices);
+  }
 };
 TYPED_TEST_SUITE(DegenerateShapesTest, AllScalarsAndChecked);
 
@@ -130,13 +135,8 @@ TYPED_TEST(DegenerateShapesTest, SliverAndSegmentInOneLineTouchWhereBothAre) {
 // vertex named nearest was the one at the top, 43 m beyond the end of the segment.
 TYPED_TEST(DegenerateShapesTest, SegmentAlongAnEdgeTouchesItWhereBothAre) {
   using S = TypeParam;
-  std::vector<Vector<S>> points;
-  for (const RawPoint& p :
-       {RawPoint{-1, -7327119612}, RawPoint{874591712747, 7327}, RawPoint{1019765687664, 883364052277},
-        RawPoint{0, 1019698578800}, RawPoint{-1, 0}}) {
-    points.push_back(fromUnits<S>(p));
-  }
-  const Shape<S> polygon = polyShapeRaw<S>(BodyId(), points);
+  const Shape<S> polygon = TestFixture::raw(
+      {{-1, -7327119612}, {874591712747, 7327}, {1019765687664, 883364052277}, {0, 1019698578800}, {-1, 0}});
   const Shape<S> segment =
       segmentShape<S>(BodyId(), fromUnits<S>({-9, -71}), fromUnits<S>({0, 834863265259}));
   for (const CollisionId start : {0u, 0xeu}) {
@@ -155,13 +155,9 @@ TYPED_TEST(DegenerateShapesTest, SegmentAlongAnEdgeTouchesItWhereBothAre) {
 // Its own edges are some units too far from the segment, the one that was named ends 988 m before its tip.
 TYPED_TEST(DegenerateShapesTest, SegmentBesideThreeEdgesInOneLineTouchesWhereBothAre) {
   using S = TypeParam;
-  std::vector<Vector<S>> points;
-  for (const RawPoint& p : {RawPoint{-1, -21500}, RawPoint{0, -8430215495680}, RawPoint{77309411328, 0},
-                            RawPoint{0, 137438955613}, RawPoint{-1, 2424307712}}) {
-    points.push_back(fromUnits<S>(p));
-  }
   const Vector<S> down(S(0), S(-1));
-  const Shape<S> polygon = polyShapeRaw<S>(BodyId(), points);
+  const Shape<S> polygon = TestFixture::raw(
+      {{-1, -21500}, {0, -8430215495680}, {77309411328, 0}, {0, 137438955613}, {-1, 2424307712}});
   const Shape<S> segment =
       segmentShape<S>(BodyId(), fromUnits<S>({0, 2465}), fromUnits<S>({92, 4398046511018}));
   const Placement<S> a(segment, Transform<S>::rigid(fromUnits<S>({21474775, 173}), down)),
@@ -178,11 +174,7 @@ TYPED_TEST(DegenerateShapesTest, SegmentBesideThreeEdgesInOneLineTouchesWhereBot
 // that, and by its faces one seemed to overlap the other.
 TYPED_TEST(DegenerateShapesTest, LongSliversInOneLineFarApartDoNotTouch) {
   using S = TypeParam;
-  std::vector<Vector<S>> points;
-  for (const RawPoint& p : {RawPoint{-4225, -67894843015083}, RawPoint{-1, 1}, RawPoint{-1, 1048575999}}) {
-    points.push_back(fromUnits<S>(p));
-  }
-  const Shape<S> sliver = polyShapeRaw<S>(BodyId(), points);
+  const Shape<S> sliver = TestFixture::raw({{-4225, -67894843015083}, {-1, 1}, {-1, 1048575999}});
   const Transform<S> turned(S(-1), S(0), S(0), S(-1), fromUnits<S>(std::int64_t{-4225}),
                             fromUnits<S>(std::int64_t{1924145349672}));
   EXPECT_EQ(TestFixture::touch(sliver, Transform<S>(), sliver, turned, S(1)).count, 0);
