@@ -168,9 +168,12 @@ Cores<S>::Cores(const PlacedShape<S>& first, const PlacedShape<S>& second) {
   take(first, a);
   take(second, b);
   for (const auto& [points, count] : {std::pair(a, countA), std::pair(b, countB)}) {
+    int edges = 0;
     eachEdge(points, count, [&](const Vector<S>& from, const Vector<S>& to) {
       shortest = std::min(shortest, lengthOf(to - from));
+      ++edges;
     });
+    doubled = doubled || (count > 2 && edges < count);
   }
   if constexpr (std::is_same_v<S, Fixed>) {
     // Rounding may turn a thin polygon inside out; collide sees its vertices.

@@ -18,7 +18,8 @@ struct Cores {
   Vector<S> a[kMaxPolyVertices], b[kMaxPolyVertices];
   Vector<S> origin;  ///< A's first vertex in the world.
   double size = 0;   ///< Of both cores and the way between them, m: what an error of a direction is worth.
-  double shortest = 1e300;        ///< Edge of either core, m.
+  double shortest = 1e300;        ///< Edge of either core that has a length, m.
+  bool doubled = false;           ///< Whether rounding has left an edge no length.
   bool dented = false;            ///< Whether a core is the hull of a polygon that is none itself.
   double reach = 0;               ///< Of the farthest vertex from the world's origin, m.
   mutable double narrowest = -1;  ///< What leastWidth found; negative: not asked yet.

@@ -23,19 +23,15 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr int kSteps = 60;
 
-/// As the target reads it: a world, or a whole snapshot.
 template <Scalar S>
-Bytes recordWorld(const Bytes& input) {
+Bytes recordWorld(const SnapshotInput& input) {
   Space<S> space;
   registerNamedHandlers(space);
-  Bytes bytes(input.begin() + 1, input.end());
-  if ((input[0] & 2) != 0) {
-    mendSize(bytes);
-    mendChecksum(bytes);
-    loadSnapshot(space, std::span<const std::uint8_t>(bytes), OtherRevision::takeStateOnly, kFuzzLimits);
+  if (input.isWhole) {
+    loadSnapshot(space, std::span<const std::uint8_t>(input.bytes), input.otherRevision, kFuzzLimits);
   } else {
     std::uint64_t end = 0;
-    space.adopt(readWorld<S>(bytes, end));
+    space.adopt(readWorld<S>(input.bytes, end));
   }
   Bytes recording;
   Recorder<S> recorder(space, ratio<S>(1, 60), recording, namedHandlerWiring<S>());
@@ -51,7 +47,8 @@ Bytes recordWorld(const Bytes& input) {
 Bytes recordingOf(const std::string& target, Bytes input) {
   if (target == "snapshot") {
     if (input.empty()) return {};
-    return (input[0] & 1) != 0 ? recordWorld<double>(input) : recordWorld<Fixed>(input);
+    const SnapshotInput world(input);
+    return world.isDouble ? recordWorld<double>(world) : recordWorld<Fixed>(world);
   }
   mendRevision(input);
   mendChecksum(input);

@@ -10,7 +10,6 @@
 
 #include "check.h"
 #include "input.h"
-#include "mend.h"
 #include "world_bytes.h"
 
 namespace samestep::fuzz {
@@ -76,30 +75,24 @@ void loadWhole(Bytes bytes, OtherRevision otherRevision) {
 }  // namespace
 }  // namespace samestep::fuzz
 
-/// The first byte chooses the number type, and whether the others are a whole snapshot.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace samestep;
   using namespace samestep::fuzz;
   if (size == 0) return 0;
-  const Bytes bytes(data + 1, size - 1);
-  if ((data[0] & 2) != 0) {
-    std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
-    const OtherRevision other = (data[0] & 8) != 0 ? OtherRevision::refuse : OtherRevision::takeStateOnly;
-    if ((data[0] & 4) == 0) {
-      if (other == OtherRevision::refuse) mendRevision(whole);
-      mendSize(whole);
-      mendChecksum(whole);
-    }
-    (data[0] & 1) != 0 ? loadWhole<double>(whole, other) : loadWhole<Fixed>(whole, other);
+  const SnapshotInput input({data, size});
+  if (input.isWhole) {
+    input.isDouble ? loadWhole<double>(input.bytes, input.otherRevision)
+                   : loadWhole<Fixed>(input.bytes, input.otherRevision);
     return 0;
   }
   // Reading is the business of this target: half of the worlds are stepped.
   const std::uint64_t choice = mixed(data, size) & 7;
   const int steps = choice < 2 ? 2 : choice < 4 ? 1 : 0;
-  if ((data[0] & 1) != 0) {
-    run<double>(bytes, steps);
+  if (input.isDouble) {
+    run<double>(input.bytes, steps);
     return 0;
   }
-  expect(run<CheckedFixed>(bytes, steps) == run<Fixed>(bytes, steps), "Fixed does what CheckedFixed does");
+  expect(run<CheckedFixed>(input.bytes, steps) == run<Fixed>(input.bytes, steps),
+         "Fixed does what CheckedFixed does");
   return 0;
 }

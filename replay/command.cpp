@@ -41,6 +41,14 @@ void checkIds(const Space<S>& space, const Spawn<S>& spawn) {
   }
 }
 
+/// Where an arm of a command ends, in the world.
+/// @throws IllegalBody for one too long to end there
+template <Scalar S>
+Vector<S> endOfArm(const Body<S>& body, const Vector<S>& arm) {
+  require<Fault::IllegalBody>(within(arm, kMaxWorldExtent<S> * S(4)), "Command's arm is too long.");
+  return body.worldCenter() + arm;
+}
+
 /// Does one kind of command each.
 template <Scalar S>
 struct Applier {
@@ -49,12 +57,12 @@ struct Applier {
 
   BodyId operator()(const ApplyImpulse<S>& c) const {
     Body<S>& body = space.body(c.body);
-    body.applyImpulse(c.impulse, body.worldCenter() + c.arm);
+    body.applyImpulse(c.impulse, endOfArm(body, c.arm));
     return {};
   }
   BodyId operator()(const ApplyForce<S>& c) const {
     Body<S>& body = space.body(c.body);
-    body.applyForce(c.force, body.worldCenter() + c.arm);
+    body.applyForce(c.force, endOfArm(body, c.arm));
     return {};
   }
   BodyId operator()(const SetVelocity<S>& c) const {

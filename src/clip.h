@@ -49,9 +49,11 @@ Vector<S> pointAlong(const SupportEdge<S>& edge, S part, S whole) {
 
 /// Projects the ends of two facing edges on each other along the normal and keeps the places where the
 /// rounded edges are at most `margin` apart: at most two. Only differences of points count.
+/// @return whether the edges face each other and some of one lies opposite some of the other; if not, the
+/// places need not be opposite each other
 /// MIS: contactPoints
 template <Scalar S>
-void clip(const SupportEdge<S>& e1, S radius1, const SupportEdge<S>& e2, S radius2, const Vector<S>& n,
+bool clip(const SupportEdge<S>& e1, S radius1, const SupportEdge<S>& e2, S radius2, const Vector<S>& n,
           S margin, CollisionInfo<S>& info) {
   const S whole1 = cross(e1.b - e1.a, n), whole2 = cross(e2.b - e2.a, n);
   const S starts = cross(e2.a - e1.a, n), last = cross(e2.b - e1.a, n), first = cross(e2.a - e1.b, n);
@@ -85,6 +87,8 @@ void clip(const SupportEdge<S>& e1, S radius1, const SupportEdge<S>& e2, S radiu
   };
   meet(last, -starts, e1.a, e2.b, back ? last < S(0) : last > S(0), e1.indexA, e2.indexB);
   meet(starts, -first, e1.b, e2.a, back ? first > S(0) : first < S(0), e1.indexB, e2.indexA);
+  return back ? whole2 >= S(0) && starts <= S(0) && last >= whole1
+              : whole2 <= S(0) && starts >= S(0) && last <= whole1;
 }
 
 }  // namespace samestep

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/collision.h>
 
-#include <array>
-
 #include "clip.h"
 #include "collision_functions.h"
 #include "gjk.h"
@@ -73,35 +71,9 @@ bool endsMayTouch(const PlacedShape<S>& a, const PlacedShape<S>& b, const Closes
   return endMayTouch(a, closest.vertexA, closest.normal) && endMayTouch(b, closest.vertexB, -closest.normal);
 }
 
-/// Whether some of the edge towards a face lies above or below it.
-template <Scalar S>
-bool facesEdge(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis) {
-  const PlacedShape<S>&reference = axis.onB ? b : a, &other = axis.onB ? a : b;
-  const SupportEdge<S> face = edgeTo(reference, axis.face),
-                       edge = edgeAt(other, axis.vertex, -reference.planes[axis.face].n);
-  const Vector<S> along = face.b - face.a;
-  const auto reaches = [&](const Vector<S>& v, const Vector<S>& end) {
-    return sign(exactDot(along, v - end));
-  };
-  return (reaches(edge.a, face.a) >= 0 || reaches(edge.b, face.a) >= 0) &&
-         (reaches(edge.a, face.b) <= 0 || reaches(edge.b, face.b) <= 0);
-}
-
-/// One point, of a vertex and the place opposite it, for edges that rounding has left none of: where one of
-/// them points at the other, its tip may lie between the places that are looked at.
-/// @param distance  of the vertex from that place, along the normal, m
-template <Scalar S>
-void touchTip(const PlacedShape<S>& a, int vertexA, const PlacedShape<S>& b, int vertexB, S distance,
-              bool tipOnA, CollisionInfo<S>& info) {
-  const Vector<S> n = info.normal;
-  const Vector<S> tip = tipOnA ? a.planes[vertexA].v0 : b.planes[vertexB].v0;
-  const Vector<S> onA = tipOnA ? tip : tip - n * distance, onB = tipOnA ? tip + n * distance : tip;
-  info.push(onA + n * a.radius, onB - n * b.radius,
-            static_cast<std::uint32_t>(vertexA) << 16 | static_cast<std::uint32_t>(vertexB));
-}
-
 /// Two shapes of which a face is nearest to a vertex.
-/// @return false where rounding has left no point
+/// @return false where rounding has left no point, or of faces all but in one line has preferred one that
+/// ends elsewhere
 template <Scalar S>
 bool touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis, S margin,
                CollisionInfo<S>& info) {
@@ -109,12 +81,11 @@ bool touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<
   const Vector<S> outward = reference.planes[axis.face].n;
   if (!endMayTouch(other, axis.vertex, -outward)) return true;
   const SupportEdge<S> face = edgeTo(reference, axis.face), edge = edgeAt(other, axis.vertex, -outward);
-  if (axis.onB) {
-    clip(edge, a.radius, face, b.radius, -outward, margin, info);
-  } else {
-    clip(face, a.radius, edge, b.radius, outward, margin, info);
-  }
-  return info.count > 0;
+  const bool opposite = axis.onB ? clip(edge, a.radius, face, b.radius, -outward, margin, info)
+                                 : clip(face, a.radius, edge, b.radius, outward, margin, info);
+  if (opposite && info.count > 0) return true;
+  info.count = 0;
+  return false;
 }
 
 template <Scalar S>
@@ -126,51 +97,33 @@ ClosestPoints<S> closestPoints(const PlacedShape<S>& a, const PlacedShape<S>& b,
   return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);
 }
 
-/// Whether of two shapes that are nearest at a vertex of one that vertex lies opposite the edge of the other.
-/// Of faces that meet all but in one line, rounded distances may name one that ends before.
+/// The edge of a shape that the search named, or the vertex as one without length, counter-clockwise.
+/// @param shift  of the shape's number in the second half of the id: 8 for A, 0 for B
 template <Scalar S>
-bool facesTip(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest) {
-  if (closest.vertexA >= 0 && closest.vertexB >= 0) return true;
-  const bool tipOnA = closest.vertexA >= 0;
-  const PlacedShape<S>& other = tipOnA ? b : a;
-  const Vector<S> tip = tipOnA ? a.planes[closest.vertexA].v0 : b.planes[closest.vertexB].v0;
-  const auto end = [&](int shift) { return other.planes[closest.id >> shift & 0xff].v0; };
-  const Vector<S> from = end(tipOnA ? 16 : 24), to = end(tipOnA ? 0 : 8);
-  return sign(exactDot(to - from, tip - from)) >= 0 && sign(exactDot(to - from, tip - to)) <= 0;
+SupportEdge<S> namedEdge(const PlacedShape<S>& shape, const ClosestPoints<S>& closest, int shift) {
+  // The search goes round clockwise.
+  const int from = static_cast<int>(closest.id >> shift & 0xff),
+            to = static_cast<int>(closest.id >> (shift + 16) & 0xff);
+  return {shape.planes[from].v0, shape.planes[to].v0, from, to};
 }
 
-/// The two edges at a vertex, each by the vertex it ends at.
+/// One point, at the places where the search found the shapes nearest, or the overlap least. Each is a vertex
+/// or lies between two of one shape, so that it is on the shape, whatever is rounded.
 template <Scalar S>
-std::array<int, 2> edgesAt(const PlacedShape<S>& shape, int vertex) {
-  return {vertex, vertex + 1 < shape.count ? vertex + 1 : 0};
-}
-
-/// Clips the edges at the vertices that are nearest to or farthest towards each other, until two give a point
-/// that lies on both shapes, as deep as they overlap. They touch, which rounding may deny by up to kFlat.
-/// @param onA, onB  the vertices farthest along the normal and against it
-template <Scalar S>
-bool touchOtherEdges(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest,
-                     int onA, int onB, S margin, CollisionInfo<S>& info) {
-  const Vector<S> n = closest.normal;
-  const S deepest = closest.distance - a.radius - b.radius - kFlat<S>;
-  const auto named = [&](int shift) { return static_cast<int>(closest.id >> shift & 0xff); };
-  for (const int vertexA : {named(24), named(8), onA}) {
-    for (const int vertexB : {named(16), named(0), onB}) {
-      for (const int edgeA : edgesAt(a, vertexA)) {
-        for (const int edgeB : edgesAt(b, vertexB)) {
-          clip(edgeTo(a, edgeA), a.radius, edgeTo(b, edgeB), b.radius, n, margin + kFlat<S>, info);
-          bool onBoth = info.count > 0;
-          for (int i = 0; i < info.count; ++i) {
-            const Vector<S> apart = info.points[i].pointB - info.points[i].pointA;
-            onBoth = onBoth && dot(apart, n) >= deepest && abs(cross(apart, n)) <= kFlat<S>;
-          }
-          if (onBoth) return true;
-          info.count = 0;
-        }
-      }
-    }
-  }
-  return false;
+void touchWhereNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest,
+                       CollisionInfo<S>& info) {
+  const SupportEdge<S> onA = namedEdge(a, closest, 8), onB = namedEdge(b, closest, 0);
+  // Ends of an edge of the Minkowski difference, along which the place nearest to the origin is looked for.
+  const Vector<S> n = closest.normal, from = onB.a - onA.a, to = onB.b - onA.b;
+  const S part = cross(from, n), whole = cross(from - to, n);
+  const auto place = [&](const PlacedShape<S>& shape, int vertex, const SupportEdge<S>& on) {
+    return vertex >= 0 ? shape.planes[vertex].v0 : pointAlong(on, part, whole);
+  };
+  const auto name = [](int vertex, const SupportEdge<S>& on) {
+    return static_cast<std::uint32_t>(vertex >= 0 ? vertex : on.indexA);
+  };
+  info.push(place(a, closest.vertexA, onA) + n * a.radius, place(b, closest.vertexB, onB) - n * b.radius,
+            name(closest.vertexA, onA) << 16 | name(closest.vertexB, onB));
 }
 
 /// Two shapes with edges, by the search for their nearest features.
@@ -181,14 +134,14 @@ void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId 
   info.id = closest.id;
   if (closest.distance > a.radius + b.radius + margin || !endsMayTouch(a, b, closest)) return;
   const Vector<S> n = closest.normal;
-  const int onA = SupportShape<S>(a).farthest(n), onB = SupportShape<S>(b).farthest(-n);
-  clip(edgeAt(a, onA, n), a.radius, edgeAt(b, onB, -n), b.radius, n, margin, info);
-  if (info.count > 0 || (closest.vertexA < 0 && closest.vertexB < 0)) [[likely]]
+  const SupportEdge<S> onA = closest.vertexA >= 0 ? edgeAt(a, closest.vertexA, n) : namedEdge(a, closest, 8);
+  const SupportEdge<S> onB = closest.vertexB >= 0 ? edgeAt(b, closest.vertexB, -n) : namedEdge(b, closest, 0);
+  const bool corners = closest.vertexA >= 0 && closest.vertexB >= 0;
+  if ((clip(onA, a.radius, onB, b.radius, n, margin, info) || corners) && info.count > 0) [[likely]]
     return;
-  if (!facesTip(a, b, closest) && touchOtherEdges(a, b, closest, onA, onB, margin, info)) return;
-  const bool tipOnA = closest.vertexA >= 0;
-  touchTip(a, tipOnA ? closest.vertexA : onA, b, closest.vertexB >= 0 ? closest.vertexB : onB,
-           closest.distance, tipOnA, info);
+  // A tip that points at the other shape may lie between the places that were looked at.
+  info.count = 0;
+  touchWhereNearest(a, b, closest, info);
 }
 
 /// Segments and polygons, but for two segments, which have no face towards each other's ends.
@@ -201,8 +154,7 @@ void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, Col
     const FaceAxis<S> axis = bestFace(a, b, reach, start);
     info.id = axis.id();
     if (axis.separation > reach) return;
-    const bool byFace = axis.separation < -surelyDeep(extentOf(a, b)) || facesVertex(a, b, axis) ||
-                        (axis.separation <= S(0) && facesEdge(a, b, axis));
+    const bool byFace = axis.separation <= S(0) || facesVertex(a, b, axis);
     if (byFace && touchFace(a, b, axis, margin, info)) return;
     // Corners near each other; thin ones may be far apart where all faces are within rounding of touching.
   }

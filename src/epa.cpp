@@ -31,12 +31,28 @@ void measure(HullEdge<S>& edge, const MinkowskiPoint<S>& to) {
   edge.distance = dot(edge.inward, edge.from.ab);
 }
 
-/// The edge nearest to the origin; of equals the last, then the first: Chipmunk's order.
+/// Where the place of an edge's line that is nearest to the origin lies: -1 before the edge, 1 behind it, 0
+/// on it.
+template <Scalar S>
+int sideOfFoot(const Vector<S>& from, const Vector<S>& to) {
+  if (sign(exactDot(to - from, from)) > 0) return -1;
+  return sign(exactDot(to - from, to)) < 0 ? 1 : 0;
+}
+
+/// The edge nearest to the origin; of equals the last, then the first: Chipmunk's order. Of edges all but in
+/// one line rounded distances may prefer one that ends elsewhere: from there it is downhill, by exact signs,
+/// to the one that the nearest place lies on.
 template <Scalar S>
 int nearest(const HullEdge<S>* hull, int count) {
   int best = count - 1;
   for (int i = 0; i + 1 < count; ++i) {
     if (hull[i].distance > hull[best].distance) best = i;
+  }
+  for (int step = 0; step < count; ++step) {
+    const int next = best + 1 < count ? best + 1 : 0;
+    const int side = sideOfFoot(hull[best].from.ab, hull[next].from.ab);
+    if (side == 0) break;
+    best = side > 0 ? next : (best == 0 ? count : best) - 1;
   }
   return best;
 }

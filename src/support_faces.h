@@ -143,13 +143,6 @@ S extentOf(const PlacedShape<S>& a, const PlacedShape<S>& b) {
   return max(around.right - around.left, around.top - around.bottom);
 }
 
-/// Deeper than this, in metres, two shapes overlap, whatever rounding makes of normals: of long shapes, by
-/// which it is multiplied, more.
-template <Scalar S>
-S surelyDeep(S extent) {
-  return max(kFlat<S>, extent * S(0x1p-30));
-}
-
 /// The best of all faces, or the one looked at first if that one separates the shapes by more than `reach`.
 /// @param start  the id of an earlier answer: that face is looked at first
 /// @pre a.count * b.count <= kMaxFacePairs

@@ -33,6 +33,14 @@ class DegenerateShapesTest : public ::testing::Test {
   static S depth(const CollisionInfo<S>& info, int i) {
     return dot(info.points[i].pointB - info.points[i].pointA, info.normal);
   }
+  /// At least one point, and its two places lie opposite each other, along the normal.
+  static void expectOpposite(const CollisionInfo<S>& info, double tolerance = 1e-5) {
+    EXPECT_GE(info.count, 1);
+    for (int i = 0; i < info.count; ++i) {
+      const Vector<S> apart = info.points[i].pointB - info.points[i].pointA;
+      EXPECT_NEAR(static_cast<double>(cross(apart, info.normal)), 0, tolerance);
+    }
+  }
   static Shape<S> hull(std::initializer_list<RawPoint> points, S radius = S(0)) {
     std::vector<Vector<S>> vertices;
     for (const RawPoint& p : points) vertices.push_back(fromUnits<S>(p));
@@ -195,6 +203,69 @@ TYPED_TEST(DegenerateShapesTest, TipsOfTwoSliversAreApartByTheWayFromOneToTheOth
   ASSERT_GE(info.count, 1);
   const double apart = static_cast<double>(dot(info.points[0].pointB - info.points[0].pointA, info.normal));
   EXPECT_NEAR(apart, at * 0x1p-32 * 1.4142135623730951, 1e-8);
+}
+
+// Two edges of each are in one line, and rounding preferred the one that ends before the other needle: a
+// place 1 km from the crossing.
+TYPED_TEST(DegenerateShapesTest, NeedlesThatCrossTouchWhereTheyCross) {
+  using S = TypeParam;
+  const Shape<S> needle =
+      TestFixture::raw({{-4225, 67894843015287}, {-1, -94489280512}, {-1, 4294967295914}});
+  const Vector<S> upright = forAngle(fromUnits<S>(std::int64_t{-4449}));
+  const Vector<S> at = fromUnits<S>({-4335, -72842645340165});
+  const CollisionInfo<S> info = TestFixture::touch(needle, Transform<S>::rigid(at, rperp(upright)), needle,
+                                                   Transform<S>::rigid(at, upright), S(1));
+  TestFixture::expectOpposite(info, 1e-3);
+  EXPECT_NEAR(static_cast<double>(TestFixture::depth(info, 0)), -22, 1e-3);
+}
+
+// As wide as one unit: the edges found nearest were the same one, which does not face itself.
+TYPED_TEST(DegenerateShapesTest, CoincidentNeedlesTouchAtPlacesOppositeEachOther) {
+  using S = TypeParam;
+  const Shape<S> needle = TestFixture::raw({{-1, 151682926}, {0, -113816633346}, {-1, 313532612608}});
+  const Transform<S> pose(S(-1), S(0), S(0), S(-1), fromUnits<S>(std::int64_t{-4284229877760}),
+                          fromUnits<S>(std::int64_t{-4962834710528}));
+  TestFixture::expectOpposite(TestFixture::touch(needle, pose, needle, pose, S(1)));
+}
+
+// The edge that the polygon is 5 m deep in begins beside another of one unit, whose end is as near: that one
+// was taken, for a depth of nothing.
+TYPED_TEST(DegenerateShapesTest, EdgeBesideDustIsTheOneThatTouches) {
+  using S = TypeParam;
+  std::vector<Vector<S>> round;
+  for (int i = 0; i < 28; ++i) round.push_back(forAngle(S(i) * kPi<S> / S(14)) * S(209));
+  const Shape<S> polygon = polyShapeRaw<S>(BodyId(), round);
+  const Shape<S> blade = TestFixture::raw({{-515396075520, -515396075506},
+                                           {12369, -12370},
+                                           {-2048, 36238786560},
+                                           {-515396075520, -515396075505}});
+  const CollisionInfo<S> info =
+      TestFixture::touch(polygon, Transform<S>(S(-1), S(0), S(0), S(-1), S(-47), ratio<S>(135, 16)), blade,
+                         Transform<S>::rigid(fromUnits<S>({559462215085, 752257228312}),
+                                             forAngle(fromUnits<S>(std::int64_t{4294967295914}))));
+  TestFixture::expectOpposite(info);
+  EXPECT_NEAR(static_cast<double>(min(TestFixture::depth(info, 0), TestFixture::depth(info, 1))), -5.13252,
+              1e-5);
+}
+
+// Of the two halves of the upper edge, which are all but in one line, either may be found best.
+TYPED_TEST(DegenerateShapesTest, BoxDeepInEitherHalfOfAnEdgeTouchesBelowItself) {
+  using S = TypeParam;
+  const Shape<S> floor = polyShapeRaw<S>(
+      BodyId(),
+      std::vector<Vector<S>>{
+          {S(-4), S(-2)}, {S(4), S(-2)}, {S(4), S(0)}, {ratio<S>(1, 2), S(0x1p-30)}, {S(-4), S(0)}});
+  const Shape<S> box = boxShape<S>(BodyId(), S(1), S(1));
+  for (const int x : {-3, -2, 2, 3}) {
+    const Transform<S> pose = Transform<S>::translation({S(x), ratio<S>(1, 4)});
+    for (const CollisionInfo<S>& info : {TestFixture::touch(floor, Transform<S>(), box, pose),
+                                         TestFixture::touch(box, pose, floor, Transform<S>())}) {
+      ASSERT_EQ(info.count, 2);
+      TestFixture::expectOpposite(info);
+      EXPECT_NEAR(static_cast<double>(TestFixture::depth(info, 0)), -0.25, 1e-8);
+      EXPECT_NEAR(static_cast<double>(abs(info.points[0].pointA.x - info.points[1].pointA.x)), 1, 1e-8) << x;
+    }
+  }
 }
 
 TYPED_TEST(DegenerateShapesTest, BladesFarBeforeEachOthersTipsDoNotTouch) {

@@ -250,6 +250,25 @@ TYPED_TEST(RecordingTest, CheckingFindsWhatWasNotRecorded) {
   EXPECT_THROW(recorder.step(), ForeignWorld);
 }
 
+// Fuzzing found that the end of the arm was worked out before it was checked, and overflowed.
+template <class S>
+class CommandTest : public ::testing::Test {};
+TYPED_TEST_SUITE(CommandTest, AllScalarsAndChecked);
+TYPED_TEST(CommandTest, ArmThatLeadsOutOfTheWorldIsRefused) {
+  Space<TypeParam> space;
+  const BodyId player = fillSmall(space);
+  space.body(player).setPosition({TypeParam(50), TypeParam(0)});
+  const Body<TypeParam> before = space.body(player);
+  const Vector<TypeParam> up{TypeParam(0), TypeParam(1)};
+  for (const TypeParam length : {TypeParam(0x7fffffff), -TypeParam(0x7fffffff), TypeParam(1 << 20)}) {
+    const Vector<TypeParam> arm{length, TypeParam(0)};
+    EXPECT_THROW(apply<TypeParam>(space, ApplyImpulse<TypeParam>{player, up, arm}), IllegalBody);
+    EXPECT_THROW(apply<TypeParam>(space, ApplyForce<TypeParam>{player, up, arm}), IllegalBody);
+  }
+  EXPECT_EQ(space.body(player).velocity(), before.velocity());
+  EXPECT_EQ(space.body(player).force(), before.force());
+}
+
 #ifndef SAMESTEP_FIXED_ONLY
 TEST(RecordingBytesTest, AreTheSameForCheckedAndWrappingFixed) {
   EXPECT_EQ(recordSmallMatch<Fixed>(), recordSmallMatch<CheckedFixed>());
