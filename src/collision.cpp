@@ -107,6 +107,16 @@ SupportEdge<S> namedEdge(const PlacedShape<S>& shape, const ClosestPoints<S>& cl
   return {shape.planes[from].v0, shape.planes[to].v0, from, to};
 }
 
+/// Whether the places of each point lie opposite each other.
+template <Scalar S>
+bool areOpposite(const CollisionInfo<S>& info) {
+  bool all = true;
+  for (int i = 0; i < info.count; ++i) {
+    all = all && abs(cross(info.points[i].pointB - info.points[i].pointA, info.normal)) <= kFlat<S>;
+  }
+  return all;
+}
+
 /// One point, at the places where the search found the shapes nearest, or the overlap least. Each is a vertex
 /// or lies between two of one shape, so that it is on the shape, whatever is rounded.
 template <Scalar S>
@@ -136,8 +146,10 @@ void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId 
   const Vector<S> n = closest.normal;
   const SupportEdge<S> onA = closest.vertexA >= 0 ? edgeAt(a, closest.vertexA, n) : namedEdge(a, closest, 8);
   const SupportEdge<S> onB = closest.vertexB >= 0 ? edgeAt(b, closest.vertexB, -n) : namedEdge(b, closest, 0);
+  const bool facing = clip(onA, a.radius, onB, b.radius, n, margin, info);
+  // Of two corners the edges need not lie opposite each other, only their ends.
   const bool corners = closest.vertexA >= 0 && closest.vertexB >= 0;
-  if ((clip(onA, a.radius, onB, b.radius, n, margin, info) || corners) && info.count > 0) [[likely]]
+  if (info.count > 0 && (facing || (corners && areOpposite(info)))) [[likely]]
     return;
   // A tip that points at the other shape may lie between the places that were looked at.
   info.count = 0;
