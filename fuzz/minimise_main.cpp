@@ -2,6 +2,8 @@
 // Chooses from the files of folders few and small ones that together reach every edge that all of them reach,
 // and prints their names: again and again the file that reaches most new edges for its size. libFuzzer's
 // -merge takes the smallest first, which leaves several times as many.
+// Usage: minimise_TARGET LEAST FOLDER...    LEAST: how many edges a file must reach that no other does, but
+// for small ones, which count for a single one: most refusals of a parser are one edge and need few bytes.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +32,9 @@ struct Candidate {
   std::size_t size = 0;
   std::vector<std::uint32_t> edges;
 };
+
+/// The size in bytes of a file that one edge is worth.
+constexpr std::size_t kSmall = 160;
 
 void clearCounters() {
   for (std::size_t i = 0; i < moduleCount; ++i)
@@ -94,7 +99,7 @@ int main(int argc, char** argv) {
     for (const Candidate& candidate : left) {
       const std::size_t unknown = unknownIn(candidate, known);
       const double worth = static_cast<double>(unknown) / (64 + static_cast<double>(candidate.size));
-      if (unknown < least || worth <= most) continue;
+      if (unknown < (candidate.size <= kSmall ? 1 : least) || worth <= most) continue;
       most = worth;
       best = &candidate;
     }
