@@ -52,19 +52,15 @@ void SceneBuilder<S>::readSettings(const Cursor& at) {
             "contactMargin", "bounceThreshold", "worldExtent"});
   at.optional("solver", [&](const Cursor& v) {
     const std::string& solver = v.text();
-    if (solver == "soft step") {
-      space.setSolver(SolverKind::softStep);
-    } else if (solver != "sequential impulses") {
-      v.fail("\"sequential impulses\" or \"soft step\" is wanted here");
-    }
+    if (solver == "soft step") return space.setSolver(SolverKind::softStep);
+    if (solver == "sequential impulses") return space.setSolver(SolverKind::sequentialImpulses);
+    v.fail("\"sequential impulses\" or \"soft step\" is wanted here");
   });
   at.optional("precision", [&](const Cursor& v) {
     const std::string& precision = v.text();
-    if (precision == "fast") {
-      space.setPrecision(ContactPrecision::fast);
-    } else if (precision != "accurate") {
-      v.fail("\"accurate\" or \"fast\" is wanted here");
-    }
+    if (precision == "fast") return space.setPrecision(ContactPrecision::fast);
+    if (precision == "accurate") return space.setPrecision(ContactPrecision::accurate);
+    v.fail("\"accurate\" or \"fast\" is wanted here");
   });
   at.optional("substeps",
               [&](const Cursor& v) { space.setSubsteps(static_cast<int>(v.integer(0, 1u << 30))); });
