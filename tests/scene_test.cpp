@@ -99,6 +99,21 @@ TYPED_TEST(SceneTest, TheSoftStepHasSettingsOfItsOwn) {
   EXPECT_EQ(settings.bounceThreshold, ratio<TypeParam>(1, 4));
 }
 
+// For a while the soft step, having become the default, was what a scene got that asked for the other.
+TYPED_TEST(SceneTest, SolverAndPrecisionAreThoseTheSceneNames) {
+  const auto settingsOf = [](const std::string& settings) {
+    return Scene<TypeParam>(
+               SceneSource::fromText(R"({"samestep": 1, "settings": )" + settings + "}", "test.json"))
+        .space()
+        .settings();
+  };
+  EXPECT_EQ(settingsOf("{}").solver, SolverKind::softStep);
+  EXPECT_EQ(settingsOf(R"({"solver": "soft step"})").solver, SolverKind::softStep);
+  EXPECT_EQ(settingsOf(R"({"solver": "sequential impulses"})").solver, SolverKind::sequentialImpulses);
+  EXPECT_EQ(settingsOf(R"({"precision": "accurate"})").precision, ContactPrecision::accurate);
+  EXPECT_EQ(settingsOf(R"({"precision": "fast"})").precision, ContactPrecision::fast);
+}
+
 TYPED_TEST(SceneTest, AGridMakesCopiesWithNumberedNames) {
   Scene<TypeParam> scene(SceneSource::fromText(
       R"({"samestep": 1, "bodies": [{"name": "b", "mass": 1, "moment": 1, "position": [1, 2],
