@@ -180,7 +180,10 @@ Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
     }
   });
   at.optional("mass", [&](const Cursor& v) { body.setMass(v.template number<S>()); });
-  at.optional("moment", [&](const Cursor& v) { body.setMoment(v.template number<S>()); });
+  at.optional("moment", [&](const Cursor& v) {
+    if (!body.rotates()) v.fail("what does not rotate has no moment");
+    body.setMoment(v.template number<S>());
+  });
   at.optional("position", [&](const Cursor& v) { body.setPosition(v.template vector<S>()); });
   at.optional("angle", [&](const Cursor& v) { body.setAngle(v.template number<S>()); });
   at.optional("velocity", [&](const Cursor& v) { body.setVelocity(v.template vector<S>()); });
@@ -203,10 +206,16 @@ std::vector<Vector<S>> SceneBuilder<S>::readPoints(const Cursor& at) {
 template <Scalar S>
 Shape<S> SceneBuilder<S>::readGeometry(const Cursor& at) {
   const S radius = at.has("radius") ? at.at("radius").template number<S>() : S(0);
-  const auto only = [&](const char* kind) {
-    for (const char* other : {"circle", "box", "polygon", "hull", "segment"}) {
-      if (std::string_view(other) != kind && at.has(other)) at.at(other).fail("a shape is one thing only");
+  const auto only = [&](std::string_view kind) {
+    for (const std::string_view other : {"circle", "box", "polygon", "hull", "segment"}) {
+      if (other != kind && at.has(other)) at.at(other).fail("a shape is one thing only");
     }
+    const auto refuse = [&](std::string_view key, bool meant) {
+      if (!meant && at.has(key)) at.at(key).fail("means nothing to a " + std::string(kind));
+    };
+    refuse("offset", kind == "circle");
+    refuse("neighbors", kind == "segment");
+    refuse("radius", kind != "circle");
     return at.at(kind);
   };
   if (at.has("circle")) {
@@ -249,7 +258,10 @@ Shape<S> SceneBuilder<S>::readShape(const Cursor& at) {
   const auto word = [](const Cursor& v) { return static_cast<std::uint32_t>(v.integer(0, 0xffffffffu)); };
   ShapeFilter filter;
   at.optional("density", [&](const Cursor& v) { shape.setDensity(v.template number<S>()); });
-  at.optional("mass", [&](const Cursor& v) { shape.setMass(v.template number<S>()); });
+  at.optional("mass", [&](const Cursor& v) {
+    if (at.has("density")) v.fail("a shape has a mass or a density");
+    shape.setMass(v.template number<S>());
+  });
   at.optional("friction", [&](const Cursor& v) { shape.setFriction(v.template number<S>()); });
   at.optional("elasticity", [&](const Cursor& v) { shape.setElasticity(v.template number<S>()); });
   at.optional("surfaceVelocity", [&](const Cursor& v) { shape.setSurfaceVelocity(v.template vector<S>()); });

@@ -69,6 +69,10 @@ class Row {
   std::array<std::string_view, kColumns> fields_;
 };
 
+[[noreturn]] void refuseHeader(const std::string& file, std::uint32_t line) {
+  throw SceneError(file, line, "", "the first line must be: " + std::string(kHeader));
+}
+
 template <Scalar S>
 Body<S> bodyOf(const Row& row) {
   Body<S> body;
@@ -105,7 +109,7 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
   if (at.has("friction")) surface.friction = at.at("friction").template number<S>();
   if (at.has("elasticity")) surface.elasticity = at.at("elasticity").template number<S>();
   const std::string file = document_.folder + at.at("csv").text();
-  const std::string text = readSceneFile(file);
+  const std::string text = document_.read(file);
 
   Space<S>& space = scene_.space_;
   BodyId body;
@@ -113,8 +117,7 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
   bool header = true;
   eachLine(text, [&](std::uint32_t line, std::string_view content) {
     if (header) {
-      if (content != kHeader)
-        throw SceneError(file, line, "", "the first line must be: " + std::string(kHeader));
+      if (content != kHeader) refuseHeader(file, line);
       header = false;
       return;
     }
@@ -133,6 +136,7 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
       space.add(shape);
     });
   });
+  if (header) refuseHeader(file, 1);
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

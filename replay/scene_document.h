@@ -13,21 +13,22 @@ namespace samestep {
 /// What SceneSource holds: a parsed file, or the name and number of a family.
 struct SceneSource::Document {
   std::string name;
-  std::string file;    ///< As errors call it.
-  std::string folder;  ///< Where the files are that it names; with a slash at the end, or empty.
+  std::string file;             ///< As errors call it.
+  std::string folder;           ///< Where the files are that it names; with a slash at the end, or empty.
+  SceneFiles* files = nullptr;  ///< Null for those on disk.
   json::Node root;
   std::string family;  ///< Empty for a file.
   std::uint32_t size = 0;
+
+  /// The text of a file that the scene names.
+  /// @throws SceneError
+  std::string read(const std::string& path) const;
 };
 
 /// A scene may have so many bodies and events, and each of its files so many bytes.
 inline constexpr std::uint32_t kMaxSceneBodies = 65536;
 inline constexpr std::uint32_t kMaxSceneEvents = 1u << 20;
 inline constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
-
-/// The whole of a text file.
-/// @throws SceneError
-std::string readSceneFile(const std::string& path);
 
 /// Calls visit(line number, line) for each line that is neither empty nor begins with '#'.
 template <class Visit>

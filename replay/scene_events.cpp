@@ -40,11 +40,25 @@ Command<S> commandWith(CommandKind kind, const Vector<S>& value, const Vector<S>
   }
 }
 
-bool takesScalar(CommandKind kind) {
-  return kind == CommandKind::setAngularVelocity || kind == CommandKind::setAngle;
+/// How many numbers the value of a command has.
+int numbersOf(CommandKind kind) {
+  switch (kind) {
+    case CommandKind::setAngularVelocity:
+    case CommandKind::setAngle:
+      return 1;
+    case CommandKind::spawn:
+    case CommandKind::remove:
+      return 0;
+    default:
+      return 2;
+  }
 }
 
-/// The fields of a line, at most `kMost` of them.
+bool takesArm(CommandKind kind) {
+  return kind == CommandKind::applyImpulse || kind == CommandKind::applyForce;
+}
+
+/// The fields of a line; of one with more than kMostFields, one more than those.
 constexpr std::uint32_t kMostFields = 5;
 std::vector<std::string_view> splitFields(std::string_view line) {
   std::vector<std::string_view> fields;
@@ -87,11 +101,18 @@ void SceneBuilder<S>::readEvents(const Cursor& at) {
 
 template <Scalar S>
 void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
-  at.allow({"tick", "do", "body", "value", "arm"});
-  const std::uint64_t tick = at.at("tick").integer(1, kMaxTick);
   const Cursor word = at.at("do");
   const std::optional<CommandKind> kind = kindOfWord(word.text());
   if (!kind) word.fail("no command of this name");
+  const int numbers = numbersOf(*kind);
+  if (takesArm(*kind)) {
+    at.allow({"tick", "do", "body", "value", "arm"});
+  } else if (numbers > 0) {
+    at.allow({"tick", "do", "body", "value"});
+  } else {
+    at.allow({"tick", "do", "body"});
+  }
+  const std::uint64_t tick = at.at("tick").integer(1, kMaxTick);
   if (*kind == CommandKind::spawn) {
     if (at.at("body").has("grid")) at.at("body").at("grid").fail("a spawn brings in one body");
     addEvent(at, tick, spawned, readBody(at.at("body")));
@@ -100,11 +121,8 @@ void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
   const std::uint32_t name = nameOf(at.at("body").text());
   if (name == kNoName) at.at("body").fail("no body of this name");
   Vector<S> value;
-  if (takesScalar(*kind)) {
-    value.x = at.at("value").template number<S>();
-  } else if (*kind != CommandKind::remove) {
-    value = at.at("value").template vector<S>();
-  }
+  if (numbers == 1) value.x = at.at("value").template number<S>();
+  if (numbers == 2) value = at.at("value").template vector<S>();
   const Vector<S> arm = at.has("arm") ? at.at("arm").template vector<S>() : Vector<S>();
   addEvent(at, tick, name, commandWith<S>(*kind, value, arm));
 }
@@ -113,7 +131,7 @@ void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
 template <Scalar S>
 void SceneBuilder<S>::readInputs(const Cursor& at) {
   const std::string file = document_.folder + at.text();
-  const std::string text = readSceneFile(file);
+  const std::string text = document_.read(file);
   bool header = true;
   eachLine(text, [&](std::uint32_t line, std::string_view content) {
     const auto fail = [&](const std::string& reason) { throw SceneError(file, line, "", reason); };
@@ -127,20 +145,26 @@ void SceneBuilder<S>::readInputs(const Cursor& at) {
     std::uint64_t tick = 0;
     const auto [end, error] = std::from_chars(fields[0].data(), fields[0].data() + fields[0].size(), tick);
     const bool whole = error == std::errc() && end == fields[0].data() + fields[0].size();
-    if (!whole || tick < 1 || tick > kMaxTick) fail("the tick must be a whole number from 1");
+    if (!whole || tick < 1 || tick > kMaxTick)
+      fail("the tick must be a whole number from 1 to " + std::to_string(kMaxTick));
     const std::uint32_t name = nameOf(std::string(fields[1]));
     if (name == kNoName) fail("no body is named \"" + std::string(fields[1]) + "\"");
     const std::optional<CommandKind> kind = kindOfWord(fields[2]);
     if (!kind || *kind == CommandKind::spawn)
       fail("no command \"" + std::string(fields[2]) + "\" for inputs");
-    const auto number = [&](std::string_view digits) {
-      S value{};
-      if (digits.empty()) return value;
-      const char* reason = reasonOf(parseDecimal(digits, value));
-      if (reason != nullptr) fail("\"" + std::string(digits) + "\": " + reason);
-      return value;
-    };
-    addEvent(at, tick, name, commandWith<S>(*kind, {number(fields[3]), number(fields[4])}, {}));
+    const int numbers = numbersOf(*kind);
+    S value[2]{};
+    for (int i = 0; i < 2; ++i) {
+      const std::string column = i == 0 ? "x" : "y";
+      const std::string_view digits = fields[static_cast<std::size_t>(3 + i)];
+      if (i >= numbers) {
+        if (!digits.empty()) fail(column + " means nothing to " + commandName(*kind) + ", and must be empty");
+        continue;
+      }
+      const char* reason = reasonOf(parseDecimal(digits, value[i]));
+      if (reason != nullptr) fail(column + ", \"" + std::string(digits) + "\": " + reason);
+    }
+    addEvent(at, tick, name, commandWith<S>(*kind, {value[0], value[1]}, {}));
   });
   if (header) throw SceneError(file, 1, "", "the first line must be: tick,body,do,x,y");
 }

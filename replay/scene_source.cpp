@@ -34,12 +34,24 @@ std::string executableFolder() {
   return error ? std::string() : path.parent_path().string();
 }
 
+/// The whole of a text file.
+std::string readFromDisk(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error) throw SceneError(path, 0, "", "cannot be read: " + error.message());
+  if (bytes > kMaxSceneFileBytes) throw SceneError(path, 0, "", "larger than 64 MiB");
+  std::ifstream stream(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) throw SceneError(path, 0, "", "cannot be read");
+  return text;
+}
+
 void readFile(const std::string& path, SceneSource::Document& document) {
   const fs::path place(path);
   document.name = place.stem().string();
   document.file = path;
   document.folder = place.has_parent_path() ? place.parent_path().string() + "/" : "";
-  document.root = json::parse(readSceneFile(path), path);
+  document.root = json::parse(readFromDisk(path), path);
 }
 
 /// "pyramid:40"; false where it is no family.
@@ -82,17 +94,6 @@ SceneError::SceneError(const std::string& file, std::uint32_t line, const std::s
                        const std::string& reason)
     : text_(file + ":" + (line > 0 ? std::to_string(line) + ":" : "") +
             (path.empty() ? "" : " " + path + ":") + " " + reason) {}
-
-std::string readSceneFile(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  if (error) throw SceneError(path, 0, "", "cannot be read: " + error.message());
-  if (bytes > kMaxSceneFileBytes) throw SceneError(path, 0, "", "larger than 64 MiB");
-  std::ifstream stream(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) throw SceneError(path, 0, "", "cannot be read");
-  return text;
-}
 
 std::vector<std::string> sceneFolders() {
   std::vector<std::string> folders;
@@ -141,15 +142,20 @@ SceneSource SceneSource::find(std::string_view nameOrPath) {
   throw SceneError(name, 0, "", "no scene of this name; 'samestep scenes' lists them");
 }
 
-SceneSource SceneSource::fromText(std::string_view text, const std::string& file) {
+SceneSource SceneSource::fromText(std::string_view text, const std::string& file, SceneFiles* files) {
   SceneSource source(new Document);
   source.document_->name = file;
   source.document_->file = file;
+  source.document_->files = files;
   source.document_->root = json::parse(text, file);
   return source;
 }
 
 SceneSource::~SceneSource() { delete document_; }
+
+std::string SceneSource::Document::read(const std::string& path) const {
+  return files != nullptr ? files->read(path) : readFromDisk(path);
+}
 
 SceneSummary SceneSource::summary() const { return summaryOf(*document_); }
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/scene.h>
 
+#include <algorithm>
+#include <cstring>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +13,7 @@
 #include <samestep/decimal.h>
 #include <samestep/draw.h>
 #include "support/scalars.h"
+#include "support/scenes.h"
 
 namespace samestep {
 namespace {
@@ -24,17 +29,6 @@ S decimal(const char* text) {
   S value{};
   EXPECT_EQ(parseDecimal(std::string_view(text), value), DecimalStatus::ok);
   return value;
-}
-
-/// What a scene is refused with; empty where it is not.
-template <Scalar S>
-std::string complaint(const std::string& text) {
-  try {
-    Scene<S> scene(SceneSource::fromText(text, "test.json"));
-    return "";
-  } catch (const SceneError& error) {
-    return error.what();
-  }
 }
 
 /// The only body beside the static one.
@@ -102,16 +96,118 @@ TYPED_TEST(SceneTest, TheSoftStepHasSettingsOfItsOwn) {
 // For a while the soft step, having become the default, was what a scene got that asked for the other.
 TYPED_TEST(SceneTest, SolverAndPrecisionAreThoseTheSceneNames) {
   const auto settingsOf = [](const std::string& settings) {
-    return Scene<TypeParam>(
-               SceneSource::fromText(R"({"samestep": 1, "settings": )" + settings + "}", "test.json"))
-        .space()
-        .settings();
+    return sceneFrom<TypeParam>(R"({"samestep": 1, "settings": )" + settings + "}").space().settings();
   };
   EXPECT_EQ(settingsOf("{}").solver, SolverKind::softStep);
   EXPECT_EQ(settingsOf(R"({"solver": "soft step"})").solver, SolverKind::softStep);
   EXPECT_EQ(settingsOf(R"({"solver": "sequential impulses"})").solver, SolverKind::sequentialImpulses);
   EXPECT_EQ(settingsOf(R"({"precision": "accurate"})").precision, ContactPrecision::accurate);
   EXPECT_EQ(settingsOf(R"({"precision": "fast"})").precision, ContactPrecision::fast);
+}
+
+/// A key of an object, with what stands beside it and, instead of it, in a scene without it.
+struct KeyCase {
+  const char* key;
+  const char* value;
+  const char* beside = "";
+  const char* instead = "";
+};
+
+/// Of all keys that an object of a scene may have, each but one that is for events alone changes the world:
+/// none is read and forgotten.
+template <Scalar S>
+void eachKeyIsHeard(const std::string& before, const std::string& after, const std::vector<KeyCase>& cases,
+                    std::string_view forEvents = {}) {
+  const auto hashOf = [&](const std::string& inside) {
+    return sceneFrom<S>(before + inside + after).space().hash();
+  };
+  for (const auto& [key, value, beside, instead] : cases) {
+    const std::string with = "\"" + std::string(key) + "\": " + value + beside;
+    EXPECT_NE(hashOf(with), hashOf(*instead != 0 ? instead : *beside != 0 ? beside + 1 : "")) << with;
+  }
+  // Which keys there are is what one that there is not is refused with.
+  std::string known = complaint<S>(before + "\"?\": 0" + after);
+  known.erase(0, known.find("known here: ") + std::strlen("known here: "));
+  std::istringstream keys(known);
+  std::size_t found = 0;
+  for (std::string key; std::getline(keys >> std::ws, key, ','); ++found) {
+    const auto same = [&](const KeyCase& one) { return one.key == key; };
+    EXPECT_TRUE(key == forEvents || std::any_of(cases.begin(), cases.end(), same)) << key;
+  }
+  EXPECT_GE(found, cases.size());
+}
+
+TYPED_TEST(SceneTest, EachSettingIsHeard) {
+  eachKeyIsHeard<TypeParam>(R"({"samestep": 1, "settings": {)", "}}",
+                            {{"solver", "\"sequential impulses\""},
+                             {"precision", "\"fast\""},
+                             {"gravity", "[0, 1]"},
+                             {"iterations", "7"},
+                             {"substeps", "3"},
+                             {"damping", "0.5"},
+                             {"collisionSlop", "0.25"},
+                             {"collisionBias", "0.125"},
+                             {"collisionPersistence", "9"},
+                             {"contactHertz", "20"},
+                             {"contactDamping", "3"},
+                             {"contactPushSpeed", "1.5"},
+                             {"contactMargin", "0.25"},
+                             {"bounceThreshold", "2"},
+                             {"worldExtent", "100"}});
+}
+
+TYPED_TEST(SceneTest, EachKeyOfABodyIsHeard) {
+  eachKeyIsHeard<TypeParam>(R"({"samestep": 1, "bodies": [{)", "}]}",
+                            {{"type", "\"kinematic\""},
+                             {"mass", "2"},
+                             {"moment", "3"},
+                             {"rotates", "false"},
+                             {"position", "[1, 2]"},
+                             {"angle", "1"},
+                             {"velocity", "[1, 0]"},
+                             {"angularVelocity", "1"},
+                             {"userData", "18446744073709551615"},
+                             {"shapes", R"([{"circle": 1}])"},
+                             {"grid", R"({"columns": 2})"}},
+                            "name");
+}
+
+TYPED_TEST(SceneTest, EachKeyOfAShapeIsHeard) {
+  constexpr const char* kCircle = R"(, "circle": 1)";
+  eachKeyIsHeard<TypeParam>(R"({"samestep": 1, "bodies": [{"shapes": [{)", "}]}]}",
+                            {{"circle", "2", "", R"("circle": 1)"},
+                             {"box", "[1, 2]", "", R"("circle": 1)"},
+                             {"polygon", "[[0, 0], [1, 0], [0, 1]]", "", R"("circle": 1)"},
+                             {"hull", "[[0, 0], [1, 0], [0, 1]]", "", R"("circle": 1)"},
+                             {"segment", "[[0, 0], [1, 0]]", "", R"("circle": 1)"},
+                             {"offset", "[1, 0]", kCircle},
+                             {"neighbors", "[[-1, 0], [2, 1]]", R"(, "segment": [[0, 0], [1, 0]])"},
+                             {"radius", "0.5", R"(, "box": [1, 1])"},
+                             {"density", "2", kCircle},
+                             {"mass", "2", kCircle},
+                             {"friction", "0.5", kCircle},
+                             {"elasticity", "0.5", kCircle},
+                             {"surfaceVelocity", "[1, 0]", kCircle},
+                             {"collisionType", "7", kCircle},
+                             {"group", "3", kCircle},
+                             {"category", "2", kCircle},
+                             {"mask", "5", kCircle},
+                             {"sensor", "true", kCircle},
+                             {"userData", "9", kCircle}});
+}
+
+TYPED_TEST(SceneTest, KeysThatMeanNothingWhereTheyStandAreRefused) {
+  const auto said = [](const char* shape) {
+    return complaint<TypeParam>(std::string(R"({"samestep": 1, "bodies": [{"shapes": [{)") + shape + "}]}]}");
+  };
+  EXPECT_THAT(said(R"("circle": 1, "radius": 1)"), HasSubstr("/radius: means nothing to a circle"));
+  EXPECT_THAT(said(R"("box": [1, 1], "offset": [1, 0])"), HasSubstr("/offset: means nothing to a box"));
+  EXPECT_THAT(said(R"("box": [1, 1], "neighbors": [[1, 0], [2, 0]])"),
+              HasSubstr("/neighbors: means nothing to a box"));
+  EXPECT_THAT(said(R"("circle": 1, "density": 1, "mass": 1)"),
+              HasSubstr("/mass: a shape has a mass or a density"));
+  EXPECT_THAT(complaint<TypeParam>(R"({"samestep": 1, "bodies": [{"rotates": false, "moment": 1}]})"),
+              HasSubstr("/moment: what does not rotate has no moment"));
 }
 
 TYPED_TEST(SceneTest, AGridMakesCopiesWithNumberedNames) {
@@ -217,7 +313,6 @@ TYPED_TEST(SceneTest, MalformedScenesAreRefusedWithTheirReason) {
               HasSubstr("/polygon: "));
   EXPECT_THAT(said("\"bodies\": [{\"name\": \"a\"}, {\"name\": \"a\"}]"),
               HasSubstr("there is a body named \"a\""));
-  EXPECT_THAT(said("\"bodies\": [{\"csv\": \"nowhere.csv\"}]"), HasSubstr("nowhere.csv: cannot be read"));
   EXPECT_THAT(said("\"bodies\": [{\"grid\": {\"columns\": 10000, \"rows\": 10000}}]"),
               HasSubstr("too many bodies"));
   EXPECT_THAT(said("\"bodies\": [{\"grid\": {\"columns\": 9, \"across\": [1e6, 0]}}]"),
@@ -226,7 +321,19 @@ TYPED_TEST(SceneTest, MalformedScenesAreRefusedWithTheirReason) {
               HasSubstr("no body of this name"));
   EXPECT_THAT(said("\"events\": [{\"tick\": 1, \"do\": \"explode\", \"body\": \"x\"}]"),
               HasSubstr("no command"));
-  EXPECT_THAT(said("\"inputs\": \"nowhere.csv\""), HasSubstr("nowhere.csv: cannot be read"));
+}
+
+TYPED_TEST(SceneTest, FilesAreLookedForOnDiskUnlessOthersAreGiven) {
+  for (const char* text : {R"({"samestep": 1, "bodies": [{"csv": "nowhere.csv"}]})",
+                           R"({"samestep": 1, "inputs": "nowhere.csv"})"}) {
+    EXPECT_EQ(complaint<TypeParam>(text), "nowhere.csv: is not in memory");
+    try {
+      Scene<TypeParam> scene(SceneSource::fromText(text, "test.json"));
+      ADD_FAILURE() << text;
+    } catch (const SceneError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("nowhere.csv: cannot be read"));
+    }
+  }
 }
 
 TYPED_TEST(SceneTest, DeepNestingIsRefusedBeforeItCanHarm) {

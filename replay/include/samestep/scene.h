@@ -33,15 +33,29 @@ struct SceneSummary {
   std::uint64_t ticks = 600;  ///< How long it is worth watching.
 };
 
-/// A scene's files, read but not yet turned into numbers.
+/// Where the files are that a scene names.
+class SceneFiles {
+ public:
+  virtual ~SceneFiles() = default;
+  /// The whole text of a file.
+  /// @param path  the folder of the scene and the name that stands in it
+  /// @throws SceneError where there is none
+  virtual std::string read(const std::string& path) = 0;
+};
+
+/// A scene's file, read but not yet turned into numbers.
 class SceneSource {
  public:
   /// Reads a scene by its path (it ends in .json), by its name, or one of a family: "pyramid:40", "soup:500".
   /// @throws SceneError
   static SceneSource find(std::string_view nameOrPath);
-  /// Scene and input text from memory, for tests. Files that it names are looked for in the working folder.
+  /// A scene from memory: out of an archive, or sent by somebody whose scenes may name no file here.
+  /// @param file  what errors call it
+  /// @param files  the files that it names, read whenever a Scene is made of it, so that they must outlive
+  /// it;
+  ///   null for those on disk, in the working folder
   /// @throws SceneError
-  static SceneSource fromText(std::string_view text, const std::string& file);
+  static SceneSource fromText(std::string_view text, const std::string& file, SceneFiles* files = nullptr);
 
   SceneSource(SceneSource&& other) noexcept : document_(std::exchange(other.document_, nullptr)) {}
   SceneSource& operator=(SceneSource&& other) noexcept {
