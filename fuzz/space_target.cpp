@@ -349,7 +349,7 @@ class World {
   }
 
   void changeSettings(std::uint64_t op) {
-    switch (byteOf(op, 1) % 12) {
+    switch (byteOf(op, 1) % 13) {
       case 0:
         return space_.setGravity(vector(byteOf(op, 2) == 255 ? Fixed(1 << 15) : Fixed(20)));
       case 1:
@@ -374,6 +374,9 @@ class World {
         return space_.setContactPushSpeed(number(Fixed(-1), Fixed(1025)));
       case 10:
         return space_.setContactMargin(number(Fixed(-1), Fixed(2)));
+      case 12:
+        // What other ways a world goes are told of the same limit.
+        return space_.setMaxPairs(byteOf(op, 2) % 8 == 0 ? byteOf(op, 3) % 32 : kDefaultMaxPairs);
       default:
         return space_.setSolver((op >> 16 & 1) != 0 ? SolverKind::softStep : SolverKind::sequentialImpulses);
     }
@@ -521,6 +524,7 @@ class World {
   void continueTwice() {
     Space<S> other;
     connect(other);
+    other.setMaxPairs(space_.maxPairs());
     space_.save(kept_[0].saved);
     other.restore(kept_[0].saved);
     expect(other.hash() == space_.hash(), "a restored world has the same hash");

@@ -27,22 +27,31 @@ void report(const std::string& file, const VerifyResult& result, std::int64_t mi
       static_cast<unsigned long long>(perSecond), static_cast<unsigned long long>(perSecond / 60));
 }
 
-int verifyFile(const std::string& file, KernelTarget kernel, TaskRunner& workers) {
+/// What a verification is told after each tick.
+struct Watch {
+  Progress progress{"verify", 0};
+  std::int64_t end = 0;  ///< By milliseconds(); 0 for none.
+
+  bool after(std::uint64_t done, std::uint64_t total) {
+    progress.at(done, total);
+    return end == 0 || milliseconds() < end;
+  }
+};
+
+int verifyFile(const std::string& file, VerifyOptions options, std::int64_t seconds) {
   try {
     const std::vector<std::uint8_t> bytes = readFile(file);
-    Progress progress("verify", 0);
-    VerifyOptions options;
-    options.data = &progress;
-    options.kernel = kernel;
-    options.workers = &workers;
-    options.progress = [](std::uint64_t done, std::uint64_t total, void* data) {
-      static_cast<Progress*>(data)->at(done, total);
-      return true;
-    };
     const std::int64_t start = milliseconds();
+    Watch watch;
+    if (seconds != 0) watch.end = start + seconds * 1000;
+    options.data = &watch;
+    options.progress = [](std::uint64_t done, std::uint64_t total, void* data) {
+      return static_cast<Watch*>(data)->after(done, total);
+    };
     const VerifyResult result = verify(bytes, options);
     const std::int64_t took = milliseconds() - start;
-    progress.clear();
+    watch.progress.clear();
+    if (result.stopped) throw Unusable("takes longer than " + std::to_string(seconds) + " s");
     report(file, result, took);
     return result.matches ? kGood : kMismatch;
   } catch (const std::exception& error) {
@@ -60,11 +69,25 @@ void addVerify(CLI::App& app, int& result) {
   word->add_option("FILE", *files, "Recordings, as 'samestep record' or a game wrote them")->required();
   auto compute = std::make_shared<ComputeOptions>();
   addComputeOptions(*word, *compute);
-  word->callback([files, compute, &result] {
-    const KernelTarget kernel = compute->target();
+  // For recordings from strangers.
+  auto limits = std::make_shared<WorldLimits>();
+  auto seconds = std::make_shared<std::int64_t>(0);
+  word->add_option("--max-bodies", limits->bodies, "Refuse recordings of worlds with more bodies")
+      ->capture_default_str();
+  word->add_option("--max-shapes", limits->shapes, "Refuse those with more shapes")->capture_default_str();
+  word->add_option("--max-pairs", limits->pairs, "Refuse those with more shapes near each other")
+      ->check(CLI::Range(std::uint32_t{0}, kMostPairs))
+      ->capture_default_str();
+  word->add_option("--max-seconds", *seconds, "Give up after so many seconds for a recording")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30));
+  word->callback([files, compute, limits, seconds, &result] {
+    VerifyOptions options;
+    options.kernel = compute->target();
+    options.limits = *limits;
     WorkerPool pool(compute->workers);
+    options.workers = &pool;
     result = kGood;
-    for (const std::string& file : *files) result = std::max(result, verifyFile(file, kernel, pool));
+    for (const std::string& file : *files) result = std::max(result, verifyFile(file, options, *seconds));
   });
 }
 

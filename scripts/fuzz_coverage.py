@@ -22,7 +22,8 @@ GROUPS = {
         src/snapshot.cpp src/space_codec.cpp src/canonical_reader.h src/compact.h src/decimal_double.cpp
         fixed/include/samestep/raw_decimal.h fixed/include/samestep/fixed_text.h
         replay/recording.cpp replay/replay.cpp replay/command.cpp replay/json.cpp replay/scene.cpp
-        replay/scene_builder.cpp replay/scene_cursor.cpp replay/scene_events.cpp replay/scene_source.cpp
+        replay/scene_builder.cpp replay/scene_csv.cpp replay/scene_cursor.cpp replay/scene_events.cpp
+        replay/scene_source.cpp
         replay/scene_families.cpp""",
                 ("snapshot", "recording", "scene", "functions", "space")),
 }

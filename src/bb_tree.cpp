@@ -166,21 +166,24 @@ std::uint64_t BBTree<S>::bytes() const {
 }
 
 template <Scalar S>
-void BBTree<S>::updatePairs() {
+bool BBTree<S>::updatePairs(std::uint64_t most) {
   BBTree* resting = staticTree();
   if (pairedWith_ != resting) {
     pairs_.clear();
     markAllChanged();
     pairedWith_ = resting;
   }
-  if (changed_.empty() && (resting == nullptr || resting->changed_.empty())) return;
+  if (changed_.empty() && (resting == nullptr || resting->changed_.empty())) return pairs_.size() <= most;
 
   if (resting != nullptr) {
     if (changes_.size() < resting->changes_.size()) changes_.resize(resting->changes_.size(), 0);
     for (const IndexKey key : resting->changed_) changes_[key] |= kMovedInStatic;
   }
   dropChanged();
-  findChanged(resting);
+  if (!findChanged(resting, most)) {
+    found_ = {};
+    return false;
+  }
   sortFound();
   // Nearly all pairs are new when a world is built: such room is not needed again.
   const bool built = found_.size() > 4096 && pairs_.size() < found_.size() / 4;
@@ -194,6 +197,7 @@ void BBTree<S>::updatePairs() {
     resting->clearChanged();
   }
   clearChanged();
+  return true;
 }
 
 template <Scalar S>
@@ -209,24 +213,29 @@ void BBTree<S>::dropChanged() {
 // Each pair once: of two changed leaves of this tree the lower key finds it, of a changed one here and one in
 // the static tree the one here.
 template <Scalar S>
-void BBTree<S>::findChanged(const BBTree* resting) {
+bool BBTree<S>::findChanged(const BBTree* resting, std::uint64_t most) {
   found_.clear();
+  const auto tooMany = [&] { return pairs_.size() + found_.size() > most; };
   for (const IndexKey key : changed_) {
     if (!tree_.contains(key)) continue;
     tree_.queryAround(key, [&](IndexKey other) {
       const bool othersTurn = other < key && (changes_[other] & kMovedHere) != 0;
       if (!othersTurn) found_.push_back(packed(key, other));
     });
-    if (resting == nullptr) continue;
-    resting->tree_.query(tree_.box(key), [&](IndexKey other) { found_.push_back(packed(key, other)); });
+    if (resting != nullptr) {
+      resting->tree_.query(tree_.box(key), [&](IndexKey other) { found_.push_back(packed(key, other)); });
+    }
+    if (tooMany()) return false;
   }
-  if (resting == nullptr) return;
+  if (resting == nullptr) return true;
   for (const IndexKey key : resting->changed_) {
     if (!resting->tree_.contains(key)) continue;
     tree_.query(resting->tree_.box(key), [&](IndexKey other) {
       if ((changes_[other] & kMovedHere) == 0) found_.push_back(packed(key, other));
     });
+    if (tooMany()) return false;
   }
+  return true;
 }
 
 // Radix sort: two keys of a few digits each.

@@ -114,6 +114,8 @@ const char* message(Fault fault) {
       return "A given id must have an odd generation, higher than any its slot has had.";
     case Fault::UnsoundArithmetic:
       return "The processor is in a mode in which double gives other results.";
+    case Fault::TooManyPairs:
+      return "More shapes are near each other than this Space may hold as pairs; see Space::setMaxPairs.";
   }
   return "Unknown fault.";
 }

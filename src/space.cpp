@@ -627,6 +627,18 @@ void Space<S>::setStageObserver(StageObserver observer, void* data) {
 // Who computes.
 
 template <Scalar S>
+void Space<S>::setMaxPairs(std::uint32_t pairs) {
+  requireUnlocked();
+  require<Fault::ValueOutOfRange>(pairs <= kMostPairs);
+  impl_->maxPairs = pairs;
+}
+
+template <Scalar S>
+std::uint32_t Space<S>::maxPairs() const {
+  return impl_->maxPairs;
+}
+
+template <Scalar S>
 void Space<S>::setWorkers(TaskRunner* runner, Sharing sharing) {
   requireUnlocked();
   // Checked numbers note their high-water marks in one table, and report by exception.

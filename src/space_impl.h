@@ -198,6 +198,11 @@ struct Space<S>::Impl : SpaceCache<S> {
   TaskRunner* runner = nullptr;
   Crew crew;
   KernelTarget kernel = nextBestKernel(KernelTarget::best);
+  std::uint32_t maxPairs = kDefaultMaxPairs;
+  // How many times as many shapes may have boxes near each other as there may be pairs.
+  static constexpr std::uint64_t kCandidatesPerPair = 8;
+  /// Whether so many shapes can be more pairs than are allowed.
+  bool mayFindTooMany(std::uint64_t shapes) const { return shapes * shapes / 2 > maxPairs; }
 
   struct PostStep {
     PostStepFunc function;
@@ -244,6 +249,7 @@ struct Space<S>::Impl : SpaceCache<S> {
   std::vector<PairRun> pairRuns;
   bool someLeft = false;
   std::vector<std::uint8_t> held;
+  SlotMap<Body<S>, BodyId> bodiesBefore;  // Of a step that may be refused midway.
   std::vector<std::uint8_t> placedAnew;
   std::vector<std::uint32_t> found;
   std::vector<std::uint32_t> foundInOne;
@@ -302,6 +308,9 @@ struct Space<S>::Impl : SpaceCache<S> {
   void growBodies(std::uint32_t slots);
   void growShapes(std::uint32_t slots);
   void touch(std::uint32_t body);
+  void touchAll(const WorldState<S>& world) {
+    world.bodies.each([this](BodyId id, const Body<S>&) { touch(id.index); });
+  }
   void forgetTouched();
   void putBox(std::uint32_t shape, bool isStatic, const BB<S>& box, const Vector<S>& velocity);
   void dropBox(std::uint32_t shape);

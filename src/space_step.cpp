@@ -42,16 +42,19 @@ void Space<S>::step(S dt) {
     // What position functions ask about is the world before any of them moved a body; the soft step begins
     // with it: nothing but what was moved by hand has to be placed.
     const bool soft = state_.settings.solver == SolverKind::softStep;
-    if (impl_->leftMidway) {
-      state_.bodies.each([this](BodyId id, const Body<S>&) { impl_->touch(id.index); });
-    }
+    if (impl_->leftMidway) impl_->touchAll(state_);
     impl_->leftMidway = true;
     if (soft || !impl_->positionFuncs.empty()) refreshTouched();
     typename Impl::KeepPlaced keep(*impl_);
     if (!soft) {
+      const bool mayRefuse = impl_->mayFindTooMany(state_.shapes.size());
+      if (mayRefuse) impl_->bodiesBefore = state_.bodies;
       integratePositions(dt);
       updateShapes();
-      findPairs();
+      if (!findPairs()) {
+        state_.bodies = impl_->bodiesBefore;
+        refusePairs(before);
+      }
       collidePairs();
       expirePairs();
       preStep(dt);
@@ -60,7 +63,7 @@ void Space<S>::step(S dt) {
     } else {
       impl_->forgetTouched();
       endStage(Stage::updateShapes);
-      findPairs();
+      if (!findPairs()) refusePairs(before);
       collidePairs();
       expirePairs();
       softPreStep(dt);
@@ -74,6 +77,16 @@ void Space<S>::step(S dt) {
     impl_->leftMidway = false;
     guard.finish();
   }
+}
+
+/// Ends a step that found too many pairs, with all bodies where they were: it is as if it had not begun.
+template <Scalar S>
+void Space<S>::refusePairs(S timeStepBefore) {
+  state_.timeStep = timeStepBefore;
+  --state_.stamp;
+  impl_->touchAll(state_);
+  impl_->leftMidway = false;
+  fail<Fault::TooManyPairs>();
 }
 
 template <Scalar S>
@@ -186,15 +199,16 @@ template <Scalar S>
 
 // Candidates and pairs are sorted alike and walked side by side. Where a pair goes is known before any is
 // moved, so that none moves twice, and none at all in a world at rest.
+/// @return false where there would be too many: all is as before then
 template <Scalar S>
-void Space<S>::findPairs() {
+bool Space<S>::findPairs() {
   Impl& impl = *impl_;
   const S margin = pairMargin();
   if (impl.dynamicTree.margin() != margin) {
     impl.dynamicTree.setMargin(margin);
     impl.staticTree.setMargin(margin);
   }
-  impl.dynamicTree.updatePairs();
+  if (!impl.dynamicTree.updatePairs(Impl::kCandidatesPerPair * impl.maxPairs)) return false;
   const std::vector<KeyPair>& candidates = impl.dynamicTree.pairs();
   impl.overlapping.resize(state_.pairs.size() + candidates.size());
   impl.newPairs.clear();
@@ -252,10 +266,12 @@ void Space<S>::findPairs() {
     }
   }
   while (old < count) leave();
+  if (to > impl.maxPairs) return false;
   impl.pairRuns.push_back(run);
   if (to != count || impl.pairRuns.size() > 1 || !impl.newPairs.empty()) impl.threadsKnown = false;
   movePairs(to);
   endStage(Stage::findPairs);
+  return true;
 }
 
 /// Puts all pairs where findPairs wants them. Their order stays, so one that moves down finds its place free

@@ -229,6 +229,28 @@ TYPED_TEST(BBTreeTest, TheMarginOfBothBoxesCountsForEveryCandidate) {
   EXPECT_THAT(tree.pairs(), IsEmpty());
 }
 
+TYPED_TEST(BBTreeTest, ASearchThatFindsTooManyEndsAndBeginsAnew) {
+  using S = TypeParam;
+  BBTree<S> resting, moving{nullptr, nullptr, &resting};
+  const Pairs all = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  for (const IndexKey key : {0u, 1u, 2u}) moving.update(key, box<S>(0, 0, 1, 1));
+  resting.update(3, box<S>(0, 0, 1, 1));
+
+  EXPECT_FALSE(moving.updatePairs(5));
+  EXPECT_FALSE(moving.updatePairs(5));
+  EXPECT_TRUE(moving.updatePairs(6));
+  EXPECT_EQ(moving.pairs(), all);
+  EXPECT_TRUE(moving.updatePairs(6));
+  EXPECT_FALSE(moving.updatePairs(5)) << "nothing has moved, and there are as many";
+
+  // What is resting is counted, too, wherever it came from.
+  resting.update(4, box<S>(0, 0, 1, 1));
+  EXPECT_FALSE(moving.updatePairs(8));
+  resting.remove(4);
+  EXPECT_TRUE(moving.updatePairs(6));
+  EXPECT_EQ(moving.pairs(), all);
+}
+
 TYPED_TEST(BBTreeTest, ANegativeMarginThrowsAndIsNotTaken) {
   using S = TypeParam;
   BBTree<S> tree;

@@ -135,6 +135,22 @@ TEST_F(ProgramTest, RecordsVerifiesAndFindsWhatWasAltered) {
   EXPECT_THAT(several.out, HasSubstr("all 150 ticks"));
 }
 
+TEST_F(ProgramTest, VerifyHasLimitsForRecordingsFromStrangers) {
+  ASSERT_EQ(run("record stack -o '" + file("a.rec") + "' --ticks 5").code, 0);
+  const auto verifyWith = [&](const std::string& option) {
+    return run("verify " + option + " '" + file("a.rec") + "'");
+  };
+
+  EXPECT_EQ(verifyWith("--max-seconds 1000 --max-bodies 100 --max-shapes 100 --max-pairs 100").code, 0);
+  EXPECT_THAT(verifyWith("--max-bodies 5").error, HasSubstr("more bodies than allowed"));
+  EXPECT_THAT(verifyWith("--max-shapes 5").error, HasSubstr("more shapes than allowed"));
+  EXPECT_THAT(verifyWith("--max-pairs 3").error, HasSubstr("More shapes are near each other"));
+  for (const char* option :
+       {"--max-bodies 5", "--max-shapes 5", "--max-pairs 3", "--max-pairs -1", "--max-seconds 0"}) {
+    EXPECT_EQ(verifyWith(option).code, 2) << option;
+  }
+}
+
 TEST_F(ProgramTest, ChartWritesAPictureAndACsvAndTellsTheFront) {
   const Outcome outcome =
       run("chart pyramid:2 --ticks 6 --rounds 1 -o '" + file("a.svg") + "' --csv '" + file("a.csv") + "'");

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "state_hash.h"
 #include "support/scalars.h"
@@ -158,7 +159,7 @@ TYPED_TEST(SpaceCodecTest, AMovingBodyMustBeOneThatAStepLeaves) {
     const auto set = [&](const char* field, auto& now) {
       if constexpr (requires { now = value; }) {
         if (std::string_view(field) != name) return;
-        now = value;
+        now = static_cast<std::remove_reference_t<decltype(now)>>(value);
         ++found;
       }
     };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/verify.h>
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "support/recordings.h"
@@ -59,6 +61,62 @@ TYPED_TEST(VerifyTest, AWrongFirstWorldIsTickZero) {
 
   EXPECT_FALSE(result.matches);
   EXPECT_EQ(result.firstWrongTick, 0u);
+}
+
+TYPED_TEST(VerifyTest, MoreBodiesShapesOrPairsThanAllowedAreRefused) {
+  const Bytes bytes = recordSmallMatch<TypeParam>(20);
+  const auto verifyWithin = [&](const WorldLimits& limits) {
+    VerifyOptions options;
+    options.limits = limits;
+    return verify<TypeParam>(bytes, testWiring<TypeParam>(), options).matches;
+  };
+  std::uint32_t most = 0;
+  Replay<TypeParam> replay(bytes, testWiring<TypeParam>());
+  do {
+    most = std::max(most, static_cast<std::uint32_t>(replay.space().state().pairs.size()));
+  } while (replay.step());
+  ASSERT_GT(most, 0u);
+
+  WorldLimits limits;
+  limits.pairs = most;
+  EXPECT_TRUE(verifyWithin(limits));
+  limits.pairs = most - 1;
+  EXPECT_THROW(verifyWithin(limits), FormatError);
+  limits = {};
+  limits.bodies = 1;
+  EXPECT_THROW(verifyWithin(limits), FormatError);
+  limits = {};
+  limits.shapes = 1;
+  EXPECT_THROW(verifyWithin(limits), FormatError);
+}
+
+// A few bytes a body, and every body is near all others: 50 million pairs.
+TYPED_TEST(VerifyTest, AHeapOfTenThousandIsRefusedInItsFirstStep) {
+  using S = TypeParam;
+  Space<S> space;
+  for (int i = 0; i < 10000; ++i) {
+    const BodyId body = space.add(Body<S>(S(1), S(1)));
+    space.add(circleShape<S>(body, S(1)));
+  }
+  Bytes bytes;
+  Recorder<S>(space, ratio<S>(1, 60), bytes, {}).finish();
+  EXPECT_THROW(space.step(ratio<S>(1, 60)), TooManyPairs);
+  // A step is put in by hand, before the end: its item and a hash.
+  bytes.resize(bytes.size() - (1 + 8 + 8));
+  bytes.push_back(static_cast<std::uint8_t>(RecordingItem::step));
+  bytes.insert(bytes.end(), 8, 0);
+  bytes.push_back(static_cast<std::uint8_t>(RecordingItem::end));
+  bytes.insert(bytes.end(), {1, 0, 0, 0, 0, 0, 0, 0});
+  bytes.insert(bytes.end(), 8, 0);
+  mendChecksum(bytes);
+
+  EXPECT_LT(bytes.size(), 400000u);
+  try {
+    verify<S>(bytes, {});
+    ADD_FAILURE() << "not refused";
+  } catch (const FormatError& error) {
+    EXPECT_STREQ(error.what(), message(Fault::TooManyPairs));
+  }
 }
 
 TYPED_TEST(VerifyTest, MissingFunctionsAreNamedAsSuch) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <samestep/box_tree.h>
@@ -52,7 +53,9 @@ class BBTree final : public SpatialIndex<S> {
 
   /// Brings pairs() up to date with all changes of this tree and its static one. Costs O(pairs + changed log
   /// n), and nothing if nothing changed.
-  void updatePairs();
+  /// @param most  how many there may be; beyond them the search ends at once, to begin anew next time
+  /// @return false if there are more, and pairs() lacks some
+  bool updatePairs(std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
   /// Candidates as of the last updatePairs, sorted: every pair whose tight boxes, both grown by the margin,
   /// overlap, and some more. An object removed since may still be named.
   const std::vector<KeyPair>& pairs() const { return pairs_; }
@@ -98,7 +101,7 @@ class BBTree final : public SpatialIndex<S> {
   void markAllChanged();
   void refresh(IndexKey object);
   void dropChanged();
-  void findChanged(const BBTree* resting);
+  bool findChanged(const BBTree* resting, std::uint64_t most);
   void sortFound();
   void mergeFound();
   void clearChanged();

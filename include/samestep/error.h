@@ -61,6 +61,7 @@ enum class Fault : std::uint8_t {
   KernelUnavailable,  ///< A forced kernel that was not built or that this processor cannot run.
   IllegalId,          ///< An id that the caller gives to a new object and that its slot cannot have any more.
   UnsoundArithmetic,  ///< The processor is in a mode in which double gives other results.
+  TooManyPairs,       ///< More shapes near each other than a Space may hold as pairs.
 };
 
 /// The sentence a user reads: the MIS's own where it has one. MIS: message
@@ -137,6 +138,7 @@ using MalformedBytes = FaultError<Fault::MalformedBytes>;
 using KernelUnavailable = FaultError<Fault::KernelUnavailable>;
 using IllegalId = FaultError<Fault::IllegalId>;
 using UnsoundArithmetic = FaultError<Fault::UnsoundArithmetic>;
+using TooManyPairs = FaultError<Fault::TooManyPairs>;
 
 /// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.
 class FormatError : public MalformedBytes {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <limits>
 
 #include <samestep/scalar.h>
@@ -48,6 +49,11 @@ inline constexpr S kMaxForce = S(1 << 30);
 /// How far the centre of mass may lie from the body's origin, along each axis, metres.
 template <Scalar S>
 inline constexpr S kMaxCenterOfMass = S(1 << 8);
+/// How many pairs of shapes a Space may hold, unless it or who reads a world says otherwise: four for each of
+/// the bodies that a reader lets in. A step takes up to 2.6 KB for each of them.
+inline constexpr std::uint32_t kDefaultMaxPairs = 1u << 18;
+/// The most it may be told to hold.
+inline constexpr std::uint32_t kMostPairs = 1u << 28;
 /// Seconds in one step.
 template <Scalar S>
 inline constexpr S kMaxTimeStep = S(1);

@@ -464,7 +464,8 @@ class Space {
   /// One step of dt seconds, in [0, 1]; 0 does nothing.
   /// @throws SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
   ///         MissingCallback for a number without function; UnsoundArithmetic for double in another mode of
-  ///         the processor
+  ///         the processor; TooManyPairs, when position functions have run but before anything in the world
+  ///         changes
   /// MIS: spaceStep
   void step(S dt);
 
@@ -486,6 +487,15 @@ class Space {
   std::uint64_t accurateInstead() const { return accurateInstead_; }
   /// Called after each stage of a step; nullptr for none, which costs nothing.
   void setStageObserver(StageObserver observer, void* data = nullptr);
+
+  /// How many pairs of shapes near each other the Space may hold, at most kMostPairs; kDefaultMaxPairs until
+  /// called. What a step needs besides grows with them, and n shapes in one place are n^2 / 2 pairs: this is
+  /// what bounds the memory and the time of a step of a world that somebody else made. Of shapes whose boxes
+  /// are near each other, be they of one body or filtered out, eight times as many may be looked at. Wiring:
+  /// no result but the refusal depends on it, and no saved world carries it.
+  /// @throws SpaceLocked; ValueOutOfRange
+  void setMaxPairs(std::uint32_t pairs);
+  std::uint32_t maxPairs() const;
 
   // Who computes. Wiring, like functions: no result depends on it, and no saved world carries it.
 
@@ -611,7 +621,8 @@ class Space {
   void integratePositions(S dt);
   /// Places the shapes of what moved anew. MIS: shapeUpdateFunc
   void updateShapes();
-  void findPairs();
+  bool findPairs();
+  [[noreturn]] void refusePairs(S timeStepBefore);
   void movePairs(std::uint32_t count);
   void collidePairs();
   bool collidePairs(std::uint32_t begin, std::uint32_t end, bool surfacesKnown, CollisionStats& stats);

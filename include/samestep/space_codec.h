@@ -13,7 +13,7 @@ namespace samestep {
 struct WorldLimits {
   std::uint32_t bodies = 1u << 16;
   std::uint32_t shapes = 1u << 16;
-  std::uint32_t pairs = 1u << 20;
+  std::uint32_t pairs = kDefaultMaxPairs;
   std::uint32_t handlers = 1u << 12;
 };
 

@@ -23,8 +23,8 @@ struct VerifyResult {
 
 /// How verify goes about it.
 struct VerifyOptions {
-  /// For recordings from strangers, what the game's own matches need. The shapes bound the memory of a step:
-  /// n of them in one place are n^2 / 2 pairs.
+  /// For recordings from strangers, what the game's own matches need: the pairs bound the memory and the time
+  /// of a step.
   WorldLimits limits{};
   /// Called after every step; false stops, as for a recording that takes too long. Null for none.
   bool (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
