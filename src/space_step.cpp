@@ -199,7 +199,7 @@ template <Scalar S>
 
 // Candidates and pairs are sorted alike and walked side by side. Where a pair goes is known before any is
 // moved, so that none moves twice, and none at all in a world at rest.
-/// @return false where there would be too many: all is as before then
+/// @return false where there would be too many: pairs are as before then
 template <Scalar S>
 bool Space<S>::findPairs() {
   Impl& impl = *impl_;
@@ -208,7 +208,14 @@ bool Space<S>::findPairs() {
     impl.dynamicTree.setMargin(margin);
     impl.staticTree.setMargin(margin);
   }
-  if (!impl.dynamicTree.updatePairs(Impl::kCandidatesPerPair * impl.maxPairs)) return false;
+  const std::uint64_t most = Impl::kCandidatesPerPair * impl.maxPairs;
+  if (!impl.dynamicTree.updatePairs(most)) {
+    // How much room boxes have to move follows from the past; whether a step is refused must not.
+    for (std::uint32_t i = 0; i < state_.shapes.slots(); ++i) {
+      if (impl.dynamicTree.contains(i)) impl.dynamicTree.update(i, impl.placed[i].box);
+    }
+    if (!impl.dynamicTree.updatePairs(most)) return false;
+  }
   const std::vector<KeyPair>& candidates = impl.dynamicTree.pairs();
   impl.overlapping.resize(state_.pairs.size() + candidates.size());
   impl.newPairs.clear();

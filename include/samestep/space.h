@@ -491,8 +491,9 @@ class Space {
   /// How many pairs of shapes near each other the Space may hold, at most kMostPairs; kDefaultMaxPairs until
   /// called. What a step needs besides grows with them, and n shapes in one place are n^2 / 2 pairs: this is
   /// what bounds the memory and the time of a step of a world that somebody else made. Of shapes whose boxes
-  /// are near each other, be they of one body or filtered out, eight times as many may be looked at. Wiring:
-  /// no result but the refusal depends on it, and no saved world carries it.
+  /// are near each other, be they of one body or filtered out, there may be eight times as many pairs.
+  /// Wiring: no saved world carries it, and no result depends on it but the refusal, which depends on nothing
+  /// else than the world, so that of peers with the same limit none goes on alone.
   /// @throws SpaceLocked; ValueOutOfRange
   void setMaxPairs(std::uint32_t pairs);
   std::uint32_t maxPairs() const;
