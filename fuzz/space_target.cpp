@@ -55,19 +55,19 @@ class World {
 
   /// Runs the whole input. @return the hash after each operation
   const std::vector<std::uint64_t>& run() {
-    std::uint64_t before = space_.hash();
+    before_ = space_.hash();
     for (int i = 0; i < kMostOperations && !input_.atEnd(); ++i) {
       try {
         operate(input_.word());
       } catch (const Error&) {
         // Steps may stop half-way by a callback's fault only, and ours throw nothing.
-        expect(space_.hash() == before, "what is refused changes nothing");
+        expect(space_.hash() == before_, "what is refused changes nothing");
       }
       for (const std::uint64_t key : removedByCallbacks_) model_.forget(bodyOfKey(key));
       removedByCallbacks_.clear();
       if (checks_) check();
-      before = space_.hash();
-      hashes_.push_back(before);
+      before_ = space_.hash();
+      hashes_.push_back(before_);
     }
     check();
     continueTwice();
@@ -480,7 +480,10 @@ class World {
     S dt = ratio<S>(1, kTimes[byteOf(op, 1) % 4]);
     if (byteOf(op, 2) == 255) dt = number(Fixed(0), Fixed(1));
     for (int i = 0; i < 1 + byteOf(op, 3) % 4 && steps_ < kMostSteps; ++i, ++steps_) {
-      if (i > 0) hashes_.push_back(space_.hash());
+      if (i > 0) {
+        before_ = space_.hash();
+        hashes_.push_back(before_);
+      }
       space_.step(dt);
     }
   }
@@ -553,6 +556,7 @@ class World {
   Kept kept_[2];
   std::vector<std::uint64_t> removedByCallbacks_;
   std::vector<std::uint64_t> hashes_;
+  std::uint64_t before_ = 0;  ///< The hash before what is being done.
   int steps_ = 0;
 };
 
