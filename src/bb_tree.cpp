@@ -227,7 +227,7 @@ bool BBTree<S>::findChanged(const BBTree* resting, std::uint64_t most) {
     }
     if (tooMany()) return false;
   }
-  if (resting == nullptr) return true;
+  if (resting == nullptr) return !tooMany();
   for (const IndexKey key : resting->changed_) {
     if (!resting->tree_.contains(key)) continue;
     tree_.query(resting->tree_.box(key), [&](IndexKey other) {
@@ -235,7 +235,8 @@ bool BBTree<S>::findChanged(const BBTree* resting, std::uint64_t most) {
     });
     if (tooMany()) return false;
   }
-  return true;
+  // Those that were known may be too many by themselves.
+  return !tooMany();
 }
 
 // Radix sort: two keys of a few digits each.

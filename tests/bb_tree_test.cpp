@@ -249,6 +249,12 @@ TYPED_TEST(BBTreeTest, ASearchThatFindsTooManyEndsAndBeginsAnew) {
   resting.remove(4);
   EXPECT_TRUE(moving.updatePairs(6));
   EXPECT_EQ(moving.pairs(), all);
+
+  // Those that stay are counted where nothing is looked for.
+  moving.remove(2);
+  EXPECT_FALSE(moving.updatePairs(2));
+  EXPECT_TRUE(moving.updatePairs(3));
+  EXPECT_EQ(moving.pairs(), (Pairs{{0, 1}, {0, 3}, {1, 3}}));
 }
 
 TYPED_TEST(BBTreeTest, ANegativeMarginThrowsAndIsNotTaken) {
