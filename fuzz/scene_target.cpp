@@ -26,11 +26,12 @@ constexpr int kSteps = 1, kMoreSteps = 4;
 class Files : public SceneFiles {
  public:
   explicit Files(std::string_view input) {
-    for (std::string_view::size_type end = 0; end != std::string_view::npos; input.remove_prefix(end + 1)) {
-      end = input.find('\0');
+    std::string_view::size_type end = input.find('\0');
+    for (; end != std::string_view::npos; end = input.find('\0')) {
       parts_.push_back(input.substr(0, end));
-      if (end == std::string_view::npos) break;
+      input.remove_prefix(end + 1);
     }
+    parts_.push_back(input);
   }
 
   std::string_view scene() const { return parts_[0]; }

@@ -375,7 +375,7 @@ class World {
       case 10:
         return space_.setContactMargin(number(Fixed(-1), Fixed(2)));
       case 12:
-        // What other ways a world goes are told of the same limit.
+        // continueTwice gives the same limit to the world that it restores.
         return space_.setMaxPairs(byteOf(op, 2) % 8 == 0 ? byteOf(op, 3) % 32 : kDefaultMaxPairs);
       default:
         return space_.setSolver((op >> 16 & 1) != 0 ? SolverKind::softStep : SolverKind::sequentialImpulses);

@@ -624,8 +624,6 @@ void Space<S>::setStageObserver(StageObserver observer, void* data) {
   impl_->observerData = data;
 }
 
-// Who computes.
-
 template <Scalar S>
 void Space<S>::setMaxPairs(std::uint32_t pairs) {
   requireUnlocked();
@@ -637,6 +635,8 @@ template <Scalar S>
 std::uint32_t Space<S>::maxPairs() const {
   return impl_->maxPairs;
 }
+
+// Who computes.
 
 template <Scalar S>
 void Space<S>::setWorkers(TaskRunner* runner, Sharing sharing) {

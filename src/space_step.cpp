@@ -47,8 +47,7 @@ void Space<S>::step(S dt) {
     if (soft || !impl_->positionFuncs.empty()) refreshTouched();
     typename Impl::KeepPlaced keep(*impl_);
     if (!soft) {
-      const bool mayRefuse = impl_->mayFindTooMany(state_.shapes.size());
-      if (mayRefuse) impl_->bodiesBefore = state_.bodies;
+      if (impl_->mayFindTooMany(state_.shapes.size())) impl_->bodiesBefore = state_.bodies;
       integratePositions(dt);
       updateShapes();
       if (!findPairs()) {

@@ -51,9 +51,8 @@ class SceneSource {
   static SceneSource find(std::string_view nameOrPath);
   /// A scene from memory: out of an archive, or sent by somebody whose scenes may name no file here.
   /// @param file  what errors call it
-  /// @param files  the files that it names, read whenever a Scene is made of it, so that they must outlive
-  /// it;
-  ///   null for those on disk, in the working folder
+  /// @param files  those that it names, read whenever a Scene is made of it, and which must outlive it; null
+  ///               for the disk, where they are looked for in the working folder
   /// @throws SceneError
   static SceneSource fromText(std::string_view text, const std::string& file, SceneFiles* files = nullptr);
 
