@@ -14,7 +14,7 @@
 #include <samestep/poly_shape.h>
 #include <samestep/segment_shape.h>
 
-#include "degenerate_shapes.h"
+#include "study/degenerate_shapes.h"
 #include "support/random.h"
 
 namespace samestep {

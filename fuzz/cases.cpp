@@ -10,8 +10,8 @@
 #include <samestep/poly_shape.h>
 #include <samestep/segment_shape.h>
 
-#include "degenerate_shapes.h"
 #include "distance.h"
+#include "study/degenerate_shapes.h"
 
 namespace samestep::fuzz {
 namespace {

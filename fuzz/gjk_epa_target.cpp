@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // GJK and EPA alone: cores of any convex polygons, any start, any axis.
-#include "gjk.h"
+#include "narrow_phase/gjk.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Derives every constant of src/math_double_tables.h. Needs mpmath; run by hand, the output is committed."""
+"""Derives every constant of src/math/math_double_tables.h. Needs mpmath; run by hand, the output is committed."""
 
 import mpmath as mp
 

@@ -13,18 +13,18 @@ BUILD = ROOT / "build" / "coverage"
 # What is looked at, and by which targets.
 GROUPS = {
     "collision": ("""
-        src/collision.cpp src/gjk.cpp src/gjk.h src/epa.cpp src/clip.h src/support.h src/support_faces.h
-        src/circle_shape.cpp src/segment_shape.cpp src/poly_shape.cpp src/shape.cpp src/shape_edges.h
-        src/shape_geometry.h src/shape_query.cpp src/contact_geometry.h src/push_contacts.h
-        src/bb_tree.cpp src/box_tree.cpp src/brute_force_index.cpp src/spatial_index.cpp""",
+        src/narrow_phase/collision.cpp src/narrow_phase/gjk.cpp src/narrow_phase/gjk.h src/narrow_phase/epa.cpp src/narrow_phase/clip.h src/narrow_phase/support.h src/narrow_phase/support_faces.h
+        src/geometry/circle_shape.cpp src/geometry/segment_shape.cpp src/geometry/poly_shape.cpp src/geometry/shape.cpp src/geometry/shape_edges.h
+        src/geometry/shape_geometry.h src/geometry/shape_query.cpp src/contacts/contact_geometry.h src/contacts/push_contacts.h
+        src/broad_phase/bb_tree.cpp src/broad_phase/box_tree.cpp src/broad_phase/brute_force_index.cpp src/broad_phase/spatial_index.cpp""",
                   ("collide", "gjk_epa", "hull", "bb_tree", "space", "snapshot", "scene")),
     "parsing": ("""
-        src/snapshot.cpp src/space_codec.cpp src/canonical_reader.h src/compact.h src/decimal_double.cpp
+        src/snapshot/snapshot.cpp src/snapshot/space_codec.cpp src/state/canonical_reader.h src/state/compact.h src/math/decimal_double.cpp
         fixed/include/samestep/raw_decimal.h fixed/include/samestep/fixed_text.h
-        replay/recording.cpp replay/replay.cpp replay/command.cpp replay/json.cpp replay/scene.cpp
-        replay/scene_builder.cpp replay/scene_csv.cpp replay/scene_cursor.cpp replay/scene_events.cpp
-        replay/scene_source.cpp
-        replay/scene_families.cpp""",
+        replay/recording/recording.cpp replay/recording/replay.cpp replay/recording/command.cpp replay/scenes/json.cpp replay/scenes/scene.cpp
+        replay/scenes/scene_builder.cpp replay/scenes/scene_csv.cpp replay/scenes/scene_cursor.cpp replay/scenes/scene_events.cpp
+        replay/scenes/scene_source.cpp
+        replay/scenes/scene_families.cpp""",
                 ("snapshot", "recording", "scene", "functions", "space")),
 }
 

@@ -15,6 +15,8 @@ OTHER_FOLDERS = ("tests", "bench", "fuzz", "examples", "scripts", "cmake", "docs
 CODE_SUFFIXES = (".h", ".cpp")
 TEXT_SUFFIXES = CODE_SUFFIXES + (".txt", ".cmake", ".py", ".md", ".sh", "")
 MAX_COLUMNS = 110
+# Files in one folder of sources.
+MAX_FILES = 20
 
 # Where the square root may be taken, the one function of libm that IEEE-754 rounds correctly: the double
 # one, and the estimate behind the exact integer one.
@@ -121,31 +123,50 @@ def split_comments(text):
 
 
 class Layers:
-    """The table of layers.txt."""
+    """The table of layers.txt: folders from the lowest to the highest, and where each public header belongs."""
+
+    PUBLIC = "include/samestep"
 
     def __init__(self, table):
         self.names = []
-        self.modules = {}
         self.folders = {}
+        self.headers = {}
         for row in table.splitlines():
-            words = row.split("#")[0].split()
-            if not words:
+            folders, _, headers = row.split("#")[0].partition(":")
+            if not folders.split():
                 continue
-            for word in words[1:]:
-                (self.folders if word.endswith("/") else self.modules)[word.rstrip("/")] = len(self.names)
-            self.names.append(words[0])
+            for folder in folders.split():
+                self.folders[folder.rstrip("/")] = len(self.names)
+            for header in headers.split():
+                self.headers[header] = len(self.names)
+            self.names.append(folders.split()[-1])
 
-    def of(self, path):
-        """Layer of a file, or None where the table does not name it."""
-        stem = path.name.split(".")[0]
-        for folder in path.parts[:-1]:
-            if folder in self.folders and stem not in self.modules:
-                return self.folders[folder]
-        while stem:
-            if stem in self.modules:
-                return self.modules[stem]
-            stem = stem.rpartition("_")[0]
+    def of(self, root, path):
+        """Layer of a file, or None where no folder of the table has it."""
+        if path.parent.as_posix() == self.PUBLIC:
+            return self.of_header(root, path.stem)
+        for folder in path.parents:
+            if folder.as_posix() in self.folders:
+                return self.folders[folder.as_posix()]
         return None
+
+    def of_header(self, root, stem):
+        """Layer of a public header: that of the source with its name, or the one named in the table."""
+        if stem in self.headers:
+            return self.headers[stem]
+        for folder, layer in self.folders.items():
+            if any((root / folder).glob(stem + ".cpp")) or any((root / folder).glob(stem + "_*.cpp")):
+                return layer
+        return None
+
+    def stale(self, root):
+        """Names of the table that nothing exists for."""
+        for folder, layer in self.folders.items():
+            if layer not in self.headers.values() and not any(path.suffix in CODE_SUFFIXES for path in (root / folder).rglob("*")):
+                yield folder + "/"
+        for header in self.headers:
+            if not (root / self.PUBLIC / (header + ".h")).is_file():
+                yield header
 
 
 class Check:
@@ -177,6 +198,7 @@ class Check:
                 self.check_header(path, code, comments)
             self.check_includes(path, code)
         self.check_cycles()
+        self.check_folders()
         for path in self.files(ENGINE_FOLDERS + OTHER_FOLDERS, TEXT_SUFFIXES):
             self.check_leftovers(path, self.read(path))
         for path in sorted(self.root.iterdir()):
@@ -213,9 +235,9 @@ class Check:
                             "'// not state: ...' why it is never saved or hashed")
 
     def check_includes(self, path, code):
-        own = self.layers.of(path)
+        own = self.layers.of(self.root, path)
         if own is None:
-            self.report(path, 0, "layer", "not in the table of layers; add it to tests/checks/layers.txt")
+            self.report(path, 0, "layer", "in no folder of the table of layers; move it, or add the folder to tests/checks/layers.txt")
             return
         for number, line in enumerate(code):
             match = INCLUDE.search(line)
@@ -223,7 +245,7 @@ class Check:
             if target is None:
                 continue
             self.includes.setdefault(path, []).append((number, target))
-            other = self.layers.of(target)
+            other = self.layers.of(self.root, target)
             if other is not None and other > own:
                 self.report(path, number, "upward-include",
                             f"layer '{self.layers.names[own]}' includes '{self.layers.names[other]}' above it; "
@@ -259,6 +281,16 @@ class Check:
             if cycle:
                 self.report(path, 0, "include-cycle", " -> ".join(map(str, cycle)) + "; name one of them by id")
                 return
+
+    def check_table(self):
+        for name in self.layers.stale(self.root):
+            self.report(Path("tests/checks/layers.txt"), 0, "stale-layer", f"'{name}' is named and does not exist")
+
+    def check_folders(self):
+        for folder in sorted({path.parent for path in self.files(("src", "replay"), CODE_SUFFIXES)}):
+            count = sum(1 for path in (self.root / folder).iterdir() if path.suffix in CODE_SUFFIXES)
+            if count > MAX_FILES:
+                self.report(folder, 0, "folder", f"{count} files, {MAX_FILES} at most; give a subject of its own a folder")
 
     def check_leftovers(self, path, text):
         is_code = path.suffix in CODE_SUFFIXES
@@ -356,6 +388,7 @@ def main():
     root = sys.argv[1] if len(sys.argv) > 1 else HERE.parents[1]
     check = Check(root)
     files = check.run()
+    check.check_table()
     for problem in check.problems:
         print(problem)
     if not files:

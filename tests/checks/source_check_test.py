@@ -8,13 +8,16 @@ from pathlib import Path
 import source_check
 
 HEADER = "include/samestep/body.h"
-SOURCE = "src/body.cpp"
+SOURCE = "src/dynamics/body.cpp"
+
+# Sources that give public headers their layers.
+ROOMS = {"src/dynamics/body.cpp": "", "src/world/space.cpp": "", "src/geometry/shape.cpp": ""}
 
 
 def problems(files):
     """What the check says of a tree that holds these files."""
     with tempfile.TemporaryDirectory() as folder:
-        for name, text in files.items():
+        for name, text in {**ROOMS, **files}.items():
             path = Path(folder) / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
@@ -73,8 +76,8 @@ SNIPPETS = [
     ("layer", "src/elsewhere.cpp", "int x;\n", "// see tests/checks/layers.txt\n"),
     ("leftover", SOURCE, "// TO" + "DO: finish\n", "// Done.\n"),
     ("leftover", "docs/notes.md", "FIX" + "ME\n", "Fixed.\n"),
-    ("skipped-test", "tests/body_test.cpp", "GTEST_" + "SKIP();\n", "ASSERT_TRUE(x);\n"),
-    ("skipped-test", "tests/body_test.cpp", "TEST(A, DISA" + "BLED_B) {}\n", "TEST(A, Disabled) {}\n"),
+    ("skipped-test", "tests/dynamics/body_test.cpp", "GTEST_" + "SKIP();\n", "ASSERT_TRUE(x);\n"),
+    ("skipped-test", "tests/dynamics/body_test.cpp", "TEST(A, DISA" + "BLED_B) {}\n", "TEST(A, Disabled) {}\n"),
     ("long-line", SOURCE, "// " + "x" * 108 + "\n", "// " + "x" * 107 + "\n"),
     ("machine-path", "scripts/run", "cd /ho" + "me/me\n", "cd ../home/me\n"),
 ]
@@ -95,7 +98,7 @@ class SourceCheck(unittest.TestCase):
     def test_message_names_file_line_and_replacement(self):
         found = problems({SOURCE: "\n\nint x = std::rand();\n"})
         self.assertEqual(len(found), 1)
-        self.assertRegex(found[0], r"^src/body\.cpp:3: \[random\] .*mt19937_64")
+        self.assertRegex(found[0], r"^src/dynamics/body\.cpp:3: \[random\] .*mt19937_64")
 
     def test_comments_and_strings_are_not_code(self):
         quiet = ('/* std::sin(x)\n std::cos(x) */\nauto a = "std::sort(x)";\nauto b = R"(rand())";\n'
@@ -105,7 +108,7 @@ class SourceCheck(unittest.TestCase):
     def test_upward_include(self):
         found = problems({HEADER: header('#include "samestep/space.h"\n'), "include/samestep/space.h": header("")})
         self.assertEqual(len(found), 1)
-        self.assertRegex(found[0], r"^include/samestep/body\.h:2: \[upward-include\] .*'pieces' includes 'space'")
+        self.assertRegex(found[0], r"^include/samestep/body\.h:2: \[upward-include\] .*'src/dynamics/' includes 'src/world/'")
 
     def test_downward_include(self):
         files = {"include/samestep/space.h": header("#include <samestep/body.h>\n"), HEADER: header("")}
@@ -116,9 +119,31 @@ class SourceCheck(unittest.TestCase):
                  "include/samestep/scalar.h": header("")}
         self.assertRegex("".join(problems(files)), r"\[upward-include\]")
 
-    def test_part_of_a_module_is_on_its_layer(self):
-        files = {"src/body_mass.cpp": '#include "space_step.h"\n', "src/space_step.h": header("")}
-        self.assertRegex("".join(problems(files)), r"src/body_mass\.cpp:1: \[upward-include\]")
+    def test_folder_below_a_folder_is_on_its_layer(self):
+        files = {"src/solver/kernels/x86/a.h": header('#include "solver/soft_step/b.h"\n'),
+                 "src/solver/soft_step/b.h": header("")}
+        self.assertRegex("".join(problems(files)), r"kernels/x86/a\.h:2: \[upward-include\]")
+
+    def test_public_header_is_on_the_layer_of_its_source(self):
+        files = {"src/contacts/arbiter.cpp": "", "include/samestep/arbiter.h": header('#include "samestep/body.h"\n'),
+                 HEADER: header("")}
+        self.assertEqual(problems(files), [])
+
+    def test_public_header_without_a_source_is_named_in_the_table(self):
+        self.assertRegex("".join(problems({"include/samestep/nowhere.h": header("")})), r"\[layer\]")
+        self.assertEqual(problems({"include/samestep/vector.h": header("")}), [])
+
+    def test_name_without_a_folder_is_stale(self):
+        with tempfile.TemporaryDirectory() as folder:
+            check = source_check.Check(folder, source_check.Layers("src/base/\nsrc/gone/ : lost\n"))
+            (Path(folder) / "src/base").mkdir(parents=True)
+            (Path(folder) / "src/base/error.cpp").write_text("")
+            check.check_table()
+            self.assertEqual([line.split("'")[1] for line in check.problems], ["lost"])
+
+    def test_folder_of_too_many_files(self):
+        files = {f"src/dynamics/{letter}.cpp": "" for letter in "abcdefghijklmnopqrst"}
+        self.assertRegex("".join(problems(files)), r"src/dynamics:1: \[folder\] 21 files")
 
     def test_two_headers_that_include_each_other(self):
         files = {HEADER: header('#include "samestep/shape.h"\n'),

@@ -12,7 +12,7 @@ ROW = "Body,bodySetMass,Body::setMass,include/body.h,Body.SetsMass,done,\n"
 SOURCES = {
     "include/body.h": "class Body {\n  /// kg. MIS: bodySetMass, bodyWeigh\n  void setMass(S mass);\n};\n"
                       "/// MIS: vectAdd\ntemplate <Scalar S>\nVector operator+(Vector a, Vector b);\n",
-    "tests/body_test.cpp": "TYPED_TEST(Body,\n           SetsMass) {}\n// TEST(Body, Gone)\n",
+    "tests/dynamics/body_test.cpp": "TYPED_TEST(Body,\n           SetsMass) {}\n// TEST(Body, Gone)\n",
 }
 
 

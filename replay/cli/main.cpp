@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// The program: scenes, their hashes, recordings and pictures.
+#include <cstdio>
+
+#include <samestep/error.h>
+#include <samestep/fingerprint.h>
+#include <samestep/space.h>
+#include <samestep/version.h>
+
+#include "cli/program.h"
+
+namespace {
+
+/// What two players compare before a match.
+std::string fingerprints() {
+  using namespace samestep;
+  std::string text = "fingerprint fixed " + program::hex(fingerprint<Fixed>());
+#ifndef SAMESTEP_FIXED_ONLY
+  text += "\nfingerprint double " + program::hex(fingerprint<double>());
+#endif
+  return text;
+}
+
+std::string versionText() {
+  using namespace samestep;
+  return "samestep " + std::string(version()) + "\nsimulation revision " +
+         std::to_string(kSimulationRevision) + "\nscalars " + std::string(builtScalars()) + "\ncompiler " +
+         std::string(compiler()) + "\n" + fingerprints();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace samestep::program;
+  CLI::App app(
+      "Samestep: 2D physics that gives the same bits on every machine.\n"
+      "Runs scenes, records them, checks recordings and finds where two of them part.\n"
+      "Exit code: 0 all good, 1 something differs, 2 unusable arguments or files.",
+      "samestep");
+  app.set_version_flag("--version", versionText());
+  app.require_subcommand(1);
+  app.set_help_all_flag("--help-all", "Show the help of all subcommands");
+  int result = kGood;
+  addScenes(app, result);
+  addHash(app, result);
+  addRecord(app, result);
+  addVerify(app, result);
+  addDiff(app, result);
+  addDraw(app, result);
+  addChart(app, result);
+  addEnvelope(app, result);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kGood : kUnusable;
+  } catch (const std::exception& error) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "samestep: %s\n", error.what());
+    return kUnusable;
+  }
+  if (std::fflush(stdout) != 0) {
+    std::fprintf(stderr, "samestep: cannot write the output\n");
+    return kUnusable;
+  }
+  return result;
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+
+#include <samestep/named_handlers.h>
+#include <samestep/replay_diff.h>
+
+#include "cli/program.h"
+
+namespace samestep::program {
+namespace {
+
+struct Options {
+  std::string a;
+  std::string b;
+  std::uint32_t most = 5;
+};
+
+unsigned long long shown(std::uint64_t number) { return number; }
+
+/// Reads a recording's first bytes; says on the error output what is wrong with them.
+bool readInfo(const std::string& file, std::span<const std::uint8_t> bytes, RecordingInfo& info) {
+  try {
+    info = recordingInfo(bytes);
+    return true;
+  } catch (const FormatError& error) {
+    tell(file, error);
+    return false;
+  }
+}
+
+/// Whether a whole recording can be used; which of the two is at fault is told here.
+template <Scalar S>
+bool usable(const std::string& file, std::span<const std::uint8_t> bytes, std::uint64_t& ticks) {
+  try {
+    ticks = RecordingReader<S>(bytes).ticks();
+    return true;
+  } catch (const FormatError& error) {
+    tell(file, error);
+    return false;
+  }
+}
+
+void reportCommands(const ReplayDifference& difference) {
+  if (difference.commandTick == 0) {
+    std::printf("what was done to them is the same up to here\n");
+    return;
+  }
+  std::printf("what was done to them differs first at tick %llu:\n", shown(difference.commandTick));
+  for (const std::string& words : difference.onlyA) std::printf("  only A: %s\n", words.c_str());
+  for (const std::string& words : difference.onlyB) std::printf("  only B: %s\n", words.c_str());
+  if (difference.onlyA.empty() && difference.onlyB.empty()) std::printf("  the same in another order\n");
+}
+
+void reportWorlds(const ReplayDifference& difference) {
+  if (difference.stage == "start") {
+    std::printf("the worlds differ from the start, first in\n");
+  } else if (difference.stage == "commands") {
+    std::printf("the worlds differ at tick %llu, before its step, first in\n", shown(difference.tick));
+  } else {
+    std::printf("the worlds differ at tick %llu, in the stage \"%s\", first in\n", shown(difference.tick),
+                difference.stage.c_str());
+  }
+  for (const FieldDifference& field : difference.fields) {
+    std::printf("  %s, %s\n    A: %s\n    B: %s\n", field.object.c_str(), field.field.c_str(),
+                field.a.c_str(), field.b.c_str());
+  }
+}
+
+template <Scalar S>
+int run(const Options& options, std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
+  std::uint64_t ticksA = 0;
+  std::uint64_t ticksB = 0;
+  if (!usable<S>(options.a, a, ticksA) || !usable<S>(options.b, b, ticksB)) return kUnusable;
+  Progress progress("diff", 0);
+  VerifyOptions how;
+  how.data = &progress;
+  how.progress = [](std::uint64_t done, std::uint64_t total, void* data) {
+    static_cast<Progress*>(data)->at(done, total);
+    return true;
+  };
+  const ReplayDifference difference = findDifference<S>(a, b, namedHandlerWiring<S>(), options.most, how);
+  progress.clear();
+  if (difference.worldsDiffer) {
+    reportWorlds(difference);
+    if (difference.stage != "start") reportCommands(difference);
+    return kMismatch;
+  }
+  std::printf("the worlds are the same for %llu ticks\n", shown(difference.tick));
+  reportCommands(difference);
+  if (ticksA == ticksB) return kGood;
+  std::printf("but A has %llu ticks and B has %llu\n", shown(ticksA), shown(ticksB));
+  return kMismatch;
+}
+
+int diff(const Options& options) {
+  const std::vector<std::uint8_t> a = readFile(options.a);
+  const std::vector<std::uint8_t> b = readFile(options.b);
+  RecordingInfo infoA;
+  RecordingInfo infoB;
+  if (!readInfo(options.a, a, infoA) || !readInfo(options.b, b, infoB)) return kUnusable;
+  if (infoA.scalar != infoB.scalar) {
+    std::printf("one is recorded with fixed, the other with double\n");
+    return kMismatch;
+  }
+  return withScalarOf(infoA.scalar, [&](auto scalar) { return run<decltype(scalar)>(options, a, b); });
+}
+
+}  // namespace
+
+void addDiff(CLI::App& app, int& result) {
+  CLI::App* word = app.add_subcommand(
+      "diff", "Replay two recordings and find the first tick, object and field in which their worlds differ");
+  auto options = std::make_shared<Options>();
+  word->add_option("A", options->a, "A recording")->required();
+  word->add_option("B", options->b, "Another one")->required();
+  word->add_option("--fields", options->most, "How many differing fields to show")
+      ->check(CLI::Range(1u, 1000000u))
+      ->capture_default_str();
+  word->callback([options, &result] { result = diff(*options); });
+}
+
+}  // namespace samestep::program

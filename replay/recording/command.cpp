@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/command.h>
+
+#include <algorithm>
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+namespace {
+
+template <Scalar S>
+void addShapes(Space<S>& space, BodyId body, const std::vector<Shape<S>>& shapes, bool underTheirIds) {
+  for (const Shape<S>& shape : shapes) {
+    Shape<S> free = shape.detached();
+    free.setBody(body);
+    if (underTheirIds) {
+      space.add(free, shape.id());
+    } else {
+      space.add(free);
+    }
+  }
+}
+
+/// In the order in which they weigh together.
+template <Scalar S>
+std::vector<Shape<S>> byId(std::vector<Shape<S>> shapes) {
+  std::stable_sort(shapes.begin(), shapes.end(),
+                   [](const Shape<S>& a, const Shape<S>& b) { return a.id() < b.id(); });
+  return shapes;
+}
+
+/// Refuses ids that the world cannot give to what is spawned.
+template <Scalar S>
+void checkIds(const Space<S>& space, const Spawn<S>& spawn) {
+  space.state().bodies.checkGiven(spawn.id);
+  for (std::size_t i = 0; i < spawn.shapes.size(); ++i) {
+    space.state().shapes.checkGiven(spawn.shapes[i].id());
+    for (std::size_t j = 0; j < i; ++j) {
+      require<Fault::IllegalId>(spawn.shapes[i].id().index != spawn.shapes[j].id().index);
+    }
+  }
+}
+
+/// Where an arm of a command ends, in the world.
+/// @throws IllegalBody for one too long to end there
+template <Scalar S>
+Vector<S> endOfArm(const Body<S>& body, const Vector<S>& arm) {
+  require<Fault::IllegalBody>(within(arm, kMaxWorldExtent<S> * S(4)), "Command's arm is too long.");
+  return body.worldCenter() + arm;
+}
+
+/// Does one kind of command each.
+template <Scalar S>
+struct Applier {
+  Space<S>& space;
+  const Wiring<S>& wiring;
+
+  BodyId operator()(const ApplyImpulse<S>& c) const {
+    Body<S>& body = space.body(c.body);
+    body.applyImpulse(c.impulse, endOfArm(body, c.arm));
+    return {};
+  }
+  BodyId operator()(const ApplyForce<S>& c) const {
+    Body<S>& body = space.body(c.body);
+    body.applyForce(c.force, endOfArm(body, c.arm));
+    return {};
+  }
+  BodyId operator()(const SetVelocity<S>& c) const {
+    space.body(c.body).setVelocity(c.velocity);
+    return {};
+  }
+  BodyId operator()(const SetAngularVelocity<S>& c) const {
+    space.body(c.body).setAngularVelocity(c.angularVelocity);
+    return {};
+  }
+  BodyId operator()(const SetPosition<S>& c) const {
+    space.body(c.body).setPosition(c.position);
+    return {};
+  }
+  BodyId operator()(const SetAngle<S>& c) const {
+    space.body(c.body).setAngle(c.angle);
+    return {};
+  }
+  BodyId operator()(const Spawn<S>& c) const {
+    // Tried out elsewhere first: once an id is given out here, it cannot be taken back.
+    const bool given = c.id.valid();
+    Space<S> trial;
+    trial.setWorldExtent(space.worldExtent());
+    if (given) checkIds(space, c);
+    addShapes(trial, trial.add(c.body), given ? byId(c.shapes) : c.shapes, false);
+
+    const BodyId id = given ? space.add(c.body, c.id) : space.add(c.body);
+    addShapes(space, id, c.shapes, given);
+    return id;
+  }
+  BodyId operator()(const Remove& c) const {
+    space.removeWithShapes(c.body);
+    return {};
+  }
+  BodyId operator()(const UserInput& c) const {
+    require<Fault::MissingCallback>(wiring.applyInput != nullptr);
+    wiring.applyInput(space, c.bytes, wiring.data);
+    return {};
+  }
+};
+
+}  // namespace
+
+const char* commandName(CommandKind kind) {
+  switch (kind) {
+    case CommandKind::applyImpulse:
+      return "impulse";
+    case CommandKind::applyForce:
+      return "force";
+    case CommandKind::setVelocity:
+      return "velocity";
+    case CommandKind::setAngularVelocity:
+      return "angularVelocity";
+    case CommandKind::setPosition:
+      return "position";
+    case CommandKind::setAngle:
+      return "angle";
+    case CommandKind::spawn:
+      return "spawn";
+    case CommandKind::remove:
+      return "remove";
+    case CommandKind::userInput:
+      return "input";
+  }
+  return "unknown";
+}
+
+template <Scalar S>
+BodyId apply(Space<S>& space, const Command<S>& command, const Wiring<S>& wiring) {
+  return std::visit(Applier<S>{space, wiring}, command);
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template BodyId apply<double>(Space<double>&, const Command<double>&, const Wiring<double>&);
+#endif
+template BodyId apply<Fixed>(Space<Fixed>&, const Command<Fixed>&, const Wiring<Fixed>&);
+template BodyId apply<CheckedFixed>(Space<CheckedFixed>&, const Command<CheckedFixed>&,
+                                    const Wiring<CheckedFixed>&);
+
+}  // namespace samestep

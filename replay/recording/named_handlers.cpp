@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/named_handlers.h>
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+namespace {
+
+template <Scalar S>
+struct Handlers {
+  using A = Arbiter<S>;
+  using World = Space<S>;
+
+  static bool refuse(A&, World&, void*) { return false; }
+
+  /// The platform is A: what it would push down has come from below.
+  static bool oneWay(A& arbiter, World&, void*) {
+    return arbiter.normal().y >= S(0) ? true : arbiter.ignore();
+  }
+
+  static bool bounce(A& arbiter, World&, void*) {
+    arbiter.setRestitution(S(1));
+    return true;
+  }
+
+  static bool count(A& arbiter, World& space, void*) {
+    for (const BodyId id : {arbiter.bodyA(), arbiter.bodyB()}) {
+      Body<S>& body = space.body(id);
+      body.setUserData(body.userData() + 1);
+    }
+    return true;
+  }
+
+  static void kick(A& arbiter, World& space, void*) {
+    Body<S>& body = space.body(arbiter.bodyB());
+    if (!body.isDynamic()) return;
+    const Vector<S> kicked(body.velocity().x, min(body.velocity().y + S(1), kMaxSpeed<S>));
+    body.setVelocity(kicked);
+  }
+
+  static bool carry(A& arbiter, World&, void*) {
+    arbiter.setSurfaceVelocity(perp(arbiter.normal()) * S(3));
+    return true;
+  }
+
+  static void removeLater(World& space, std::uint64_t key, void*) {
+    BodyId id;
+    id.index = static_cast<std::uint32_t>(key >> 32);
+    id.generation = static_cast<std::uint32_t>(key);
+    if (space.contains(id)) space.removeWithShapes(id);
+  }
+  static bool removeB(A& arbiter, World& space, void*) {
+    const BodyId id = arbiter.bodyB();
+    if (id != space.staticBody()) {
+      space.addPostStepCallback(removeLater, std::uint64_t{id.index} << 32 | id.generation);
+    }
+    return true;
+  }
+
+  static bool slip(A& arbiter, World&, void*) {
+    arbiter.setFriction(S(0));
+    return true;
+  }
+
+  static CollisionHandler<S> of(CallbackNumber number) {
+    switch (number) {
+      case 1:
+        return {.begin = refuse};
+      case 2:
+        return {.preSolve = oneWay};
+      case 3:
+        return {.preSolve = bounce};
+      case 4:
+        return {.begin = count};
+      case 5:
+        return {.separate = kick};
+      case 6:
+        return {.preSolve = carry};
+      case 7:
+        return {.begin = removeB};
+      case 8:
+        return {.preSolve = slip};
+      default:
+        return {};
+    }
+  }
+};
+
+template <Scalar S>
+void connectNamedHandlers(Space<S>& space, void*) {
+  registerNamedHandlers(space);
+}
+
+}  // namespace
+
+CallbackNumber handlerNumber(std::string_view name) {
+  for (const NamedHandler& handler : kNamedHandlers) {
+    if (name == handler.name) return handler.number;
+  }
+  return 0;
+}
+
+template <Scalar S>
+void registerNamedHandlers(Space<S>& space) {
+  for (const NamedHandler& handler : kNamedHandlers) {
+    space.registerHandler(handler.number, Handlers<S>::of(handler.number));
+  }
+}
+
+template <Scalar S>
+Wiring<S> namedHandlerWiring() {
+  return {.connect = connectNamedHandlers<S>};
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template void registerNamedHandlers<double>(Space<double>&);
+template Wiring<double> namedHandlerWiring<double>();
+#endif
+template void registerNamedHandlers<Fixed>(Space<Fixed>&);
+template Wiring<Fixed> namedHandlerWiring<Fixed>();
+template void registerNamedHandlers<CheckedFixed>(Space<CheckedFixed>&);
+template Wiring<CheckedFixed> namedHandlerWiring<CheckedFixed>();
+
+}  // namespace samestep

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/recording.h>
+
+#include <samestep/version.h>
+
+#include <algorithm>
+
+#include "base/require_ieee.h"
+#include "recording/recording_format.h"
+#include "state/canonical_reader.h"
+#include "state/state_hash.h"
+
+namespace samestep {
+namespace {
+
+RecordingInfo readInfo(ByteReader& bytes) {
+  CanonicalReader read(bytes);
+  const auto magic = bytes.take(sizeof kRecordingMagic);
+  if (!std::equal(magic.begin(), magic.end(), kRecordingMagic)) failFormat(0, "not a recording");
+  RecordingInfo info;
+  std::uint64_t at = bytes.offset();
+  read.get(info.version);
+  if (info.version != kRecordingVersion) failFormat(at, "a recording of another format version");
+  read.get(info.revision);
+  at = bytes.offset();
+  read.get(info.scalar);
+  if (info.scalar != ScalarKind::fixed && info.scalar != ScalarKind::float64)
+    failFormat(at, "unknown scalar");
+  for (int i = 0; i < 3; ++i) {
+    at = bytes.offset();
+    if (read.next<std::uint8_t>() != 0) failFormat(at, "a byte that must be zero is not");
+  }
+  return info;
+}
+
+/// Reads the fields of one kind of command each.
+template <Scalar S>
+class CommandReader {
+ public:
+  explicit CommandReader(ByteReader& bytes) : bytes_(bytes), read_(bytes) {}
+
+  Command<S> command() {
+    const std::uint64_t at = bytes_.offset();
+    switch (read_.next<CommandKind>()) {
+      case CommandKind::applyImpulse:
+        return plain<ApplyImpulse<S>>();
+      case CommandKind::applyForce:
+        return plain<ApplyForce<S>>();
+      case CommandKind::setVelocity:
+        return plain<SetVelocity<S>>();
+      case CommandKind::setAngularVelocity:
+        return plain<SetAngularVelocity<S>>();
+      case CommandKind::setPosition:
+        return plain<SetPosition<S>>();
+      case CommandKind::setAngle:
+        return plain<SetAngle<S>>();
+      case CommandKind::spawn:
+        return spawn();
+      case CommandKind::remove:
+        return plain<Remove>();
+      case CommandKind::userInput:
+        return input();
+    }
+    failFormat(at, "unknown command");
+  }
+
+ private:
+  template <class T>
+  Command<S> plain() {
+    return Command<S>(read_.template next<T>());
+  }
+
+  Command<S> spawn() {
+    Command<S> command(std::in_place_type<Spawn<S>>);
+    auto& made = std::get<Spawn<S>>(command);
+    read_.get(made.id);
+    std::uint64_t at = bytes_.offset();
+    read_.get(made.body);
+    made.body.derive();
+    if (!made.body.wellFormed()) failFormat(at, "a body is malformed");
+    at = bytes_.offset();
+    const auto count = read_.template next<std::uint32_t>();
+    if (count > kMaxSpawnShapes) failFormat(at, "more shapes than allowed");
+    for (std::uint32_t i = 0; i < count; ++i) {
+      at = bytes_.offset();
+      Shape<S>& shape = made.shapes.emplace_back();
+      read_.get(shape);
+      if (shape.body().valid()) failFormat(at, "a new shape has a body");
+      if (!shape.wellFormed()) failFormat(at, "a shape is malformed");
+      if (made.id.valid()) {
+        ShapeId id;
+        read_.get(id);
+        shape.attach(id, 0);
+      }
+    }
+    return command;
+  }
+
+  Command<S> input() {
+    const std::uint64_t at = bytes_.offset();
+    const auto count = read_.template next<std::uint32_t>();
+    if (count > kMaxInputBytes) failFormat(at, "longer than allowed");
+    const auto taken = bytes_.take(count);
+    return UserInput{{taken.begin(), taken.end()}};
+  }
+
+  ByteReader& bytes_;
+  CanonicalReader read_;
+};
+
+}  // namespace
+
+RecordingInfo recordingInfo(std::span<const std::uint8_t> bytes) {
+  ByteReader reader(bytes);
+  return readInfo(reader);
+}
+
+template <Scalar S>
+RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const WorldLimits& limits)
+    : bytes_(bytes) {
+  ByteReader reader(bytes);
+  const RecordingInfo info = readInfo(reader);
+  if (info.scalar != ScalarTraits<S>::kKind) failFormat(16, "a recording of another scalar");
+  if (info.revision != kSimulationRevision) {
+    failRevision(12, info.revision, kSimulationRevision);
+  }
+  CanonicalReader read(reader);
+  read.get(timeStep_);
+  if (!(timeStep_ > S(0) && timeStep_ <= kMaxTimeStep<S>)) failFormat(20, "the time step is out of range");
+  offset_ = reader.offset();
+  world_ = decodeWorld<S>(bytes, offset_, limits);
+  ByteReader after(bytes, offset_);
+  initialHash_ = CanonicalReader(after).next<std::uint64_t>();
+  const std::uint64_t first = after.offset();
+
+  offset_ = first;
+  for (RecordingItem item = next(); item != RecordingItem::end; item = next()) {
+    if (item == RecordingItem::step) ++ticks_;
+  }
+  offset_ = first;
+}
+
+template <Scalar S>
+RecordingItem RecordingReader<S>::next() {
+  ByteReader reader(bytes_, offset_);
+  CanonicalReader read(reader);
+  itemOffset_ = offset_;
+  const auto item = read.next<RecordingItem>();
+  switch (item) {
+    case RecordingItem::step:
+      read.get(hash_);
+      break;
+    case RecordingItem::command:
+      command_ = CommandReader<S>(reader).command();
+      break;
+    case RecordingItem::end:
+      readEnd(reader);
+      // Stays here.
+      return item;
+    default:
+      failFormat(itemOffset_, "neither a command nor a step nor the end");
+  }
+  offset_ = reader.offset();
+  return item;
+}
+
+template <Scalar S>
+void RecordingReader<S>::readEnd(ByteReader& reader) const {
+  CanonicalReader read(reader);
+  const std::uint64_t countAt = reader.offset();
+  if (read.next<std::uint64_t>() != ticks_) failFormat(countAt, "the number of steps is another");
+  const std::uint64_t checksumAt = reader.offset();
+  const std::uint64_t computed = XXH3_64bits(bytes_.data(), static_cast<std::size_t>(checksumAt));
+  if (read.next<std::uint64_t>() != computed)
+    failFormat(checksumAt, "the checksum is wrong: the bytes were altered");
+  if (reader.remaining() > 0) failFormat(reader.offset(), "something follows the end");
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class RecordingReader<double>;
+#endif
+template class RecordingReader<Fixed>;
+template class RecordingReader<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/replay.h>
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+
+namespace {
+
+/// Whether the ids that a spawn asks for are beyond the limits: room is taken up to the highest.
+template <Scalar S>
+bool asksForMore(const Command<S>& command, const WorldLimits& limits) {
+  const auto* spawn = std::get_if<Spawn<S>>(&command);
+  if (spawn == nullptr || !spawn->id.valid()) return false;
+  for (const Shape<S>& shape : spawn->shapes) {
+    if (shape.id().index >= limits.shapes) return true;
+  }
+  return spawn->id.index >= limits.bodies;
+}
+
+}  // namespace
+
+template <Scalar S>
+Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const WorldLimits& limits)
+    : reader_(bytes, limits), wiring_(wiring), limits_(limits), recordedHash_(reader_.initialHash()) {
+  if (wiring_.connect != nullptr) wiring_.connect(space_, wiring_.data);
+  space_.setMaxPairs(limits.pairs);
+  space_.adopt(reader_.initialWorld());
+}
+
+template <Scalar S>
+bool Replay<S>::applyCommands() {
+  if (applied_ || ended_) return !ended_;
+  commands_.clear();
+  RecordingItem item = reader_.next();
+  for (; item == RecordingItem::command; item = reader_.next()) {
+    if (asksForMore(reader_.command(), limits_)) {
+      failFormat(reader_.offset(), "more bodies or shapes than allowed");
+    }
+    // Recorded commands were accepted once.
+    orFailFormat(reader_.offset(), [&] { apply(space_, reader_.command(), wiring_); });
+    commands_.push_back(reader_.command());
+    if (space_.state().bodies.slots() > limits_.bodies || space_.state().shapes.slots() > limits_.shapes) {
+      failFormat(reader_.offset(), "more bodies or shapes than allowed");
+    }
+  }
+  applied_ = true;
+  ended_ = item == RecordingItem::end;
+  return !ended_;
+}
+
+template <Scalar S>
+bool Replay<S>::step() {
+  if (!applyCommands()) return false;
+  applied_ = false;
+  orFailFormat(reader_.offset(), [&] { space_.step(reader_.timeStep()); });
+  recordedHash_ = reader_.hash();
+  ++tick_;
+  return true;
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class Replay<double>;
+#endif
+template class Replay<Fixed>;
+template class Replay<CheckedFixed>;
+
+}  // namespace samestep

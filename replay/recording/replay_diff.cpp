@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/replay_diff.h>
+
+#include <algorithm>
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+namespace {
+
+/// The commands of one list that the other lacks, in words.
+template <Scalar S>
+std::vector<std::string> wordsOf(const std::vector<Command<S>>& commands) {
+  std::vector<std::string> words;
+  for (const Command<S>& command : commands) words.push_back(describe(command));
+  return words;
+}
+
+std::vector<std::string> without(std::vector<std::string> words, const std::vector<std::string>& others) {
+  for (const std::string& other : others) {
+    const auto found = std::find(words.begin(), words.end(), other);
+    if (found != words.end()) words.erase(found);
+  }
+  return words;
+}
+
+template <Scalar S>
+void noteCommands(const Replay<S>& a, const Replay<S>& b, ReplayDifference& difference) {
+  if (difference.commandTick != 0 || (a.commands().empty() && b.commands().empty())) return;
+  const std::vector<std::string> wordsA = wordsOf(a.commands());
+  const std::vector<std::string> wordsB = wordsOf(b.commands());
+  if (wordsA == wordsB) return;
+  difference.commandTick = a.tick() + 1;
+  difference.onlyA = without(wordsA, wordsB);
+  difference.onlyB = without(wordsB, wordsA);
+}
+
+/// The worlds at the end of each stage of one step.
+template <Scalar S>
+struct Stages {
+  std::vector<Stage> stages;
+  std::vector<WorldState<S>> worlds;
+
+  static void observe(const Space<S>& space, Stage stage, void* data) {
+    auto& self = *static_cast<Stages*>(data);
+    self.stages.push_back(stage);
+    self.worlds.push_back(space.state());
+  }
+};
+
+/// Does the step again in which the worlds part, and looks at every stage of it.
+template <Scalar S>
+void localise(Replay<S>& a, Replay<S>& b, std::uint32_t most, ReplayDifference& difference) {
+  while (a.tick() + 1 < difference.tick) {
+    a.step();
+    b.step();
+  }
+  a.applyCommands();
+  b.applyCommands();
+  difference.stage = "commands";
+  difference.fields = differences(a.space().state(), b.space().state(), most);
+  if (!difference.fields.empty()) return;
+
+  Stages<S> stagesA, stagesB;
+  a.space().setStageObserver(Stages<S>::observe, &stagesA);
+  b.space().setStageObserver(Stages<S>::observe, &stagesB);
+  a.step();
+  b.step();
+  for (std::uint32_t i = 0; i < stagesA.worlds.size() && difference.fields.empty(); ++i) {
+    difference.stage = stageName(stagesA.stages[i]);
+    difference.fields = differences(stagesA.worlds[i], stagesB.worlds[i], most);
+  }
+}
+
+}  // namespace
+
+template <Scalar S>
+ReplayDifference findDifference(std::span<const std::uint8_t> bytesA, std::span<const std::uint8_t> bytesB,
+                                const Wiring<S>& wiring, std::uint32_t mostFields,
+                                const VerifyOptions& options) {
+  ReplayDifference difference;
+  Replay<S> a(bytesA, wiring, options.limits);
+  Replay<S> b(bytesB, wiring, options.limits);
+  if (a.space().hash() != b.space().hash()) {
+    difference.worldsDiffer = true;
+    difference.stage = "start";
+    difference.fields = differences(a.space().state(), b.space().state(), mostFields);
+    return difference;
+  }
+  const std::uint64_t common = min(a.ticks(), b.ticks());
+  while (a.tick() < common) {
+    a.applyCommands();
+    b.applyCommands();
+    noteCommands(a, b, difference);
+    a.step();
+    b.step();
+    difference.tick = a.tick();
+    if (options.progress != nullptr && !options.progress(a.tick(), common, options.data)) break;
+    if (a.space().hash() == b.space().hash()) continue;
+    difference.worldsDiffer = true;
+    Replay<S> againA(bytesA, wiring, options.limits);
+    Replay<S> againB(bytesB, wiring, options.limits);
+    localise(againA, againB, mostFields, difference);
+    break;
+  }
+  return difference;
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template ReplayDifference findDifference<double>(std::span<const std::uint8_t>, std::span<const std::uint8_t>,
+                                                 const Wiring<double>&, std::uint32_t, const VerifyOptions&);
+#endif
+template ReplayDifference findDifference<Fixed>(std::span<const std::uint8_t>, std::span<const std::uint8_t>,
+                                                const Wiring<Fixed>&, std::uint32_t, const VerifyOptions&);
+template ReplayDifference findDifference<CheckedFixed>(std::span<const std::uint8_t>,
+                                                       std::span<const std::uint8_t>,
+                                                       const Wiring<CheckedFixed>&, std::uint32_t,
+                                                       const VerifyOptions&);
+
+}  // namespace samestep

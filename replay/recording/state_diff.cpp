@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/decimal.h>
+#include <samestep/state_diff.h>
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+#include <utility>
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+namespace {
+
+std::string hexBits(std::uint64_t bits) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text = "0x";
+  for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[(bits >> shift) & 15];
+  return text;
+}
+
+struct Field {
+  std::string name;
+  std::string text;
+  friend bool operator==(const Field&, const Field&) = default;
+};
+
+/// Lists the fields of a record with their values as text, nested ones by their path.
+class FieldLister {
+ public:
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    // A field visited again and again is a list.
+    const std::string path = prefix_ + name;
+    repeats_ = path == last_ ? repeats_ + 1 : 0;
+    last_ = path;
+    list(repeats_ > 0 ? path + "[" + std::to_string(repeats_) + "]" : path, value);
+  }
+
+  std::vector<Field> fields;
+
+ private:
+  void list(const std::string& name, std::uint64_t value) { fields.push_back({name, std::to_string(value)}); }
+  void list(const std::string& name, std::int64_t value) { fields.push_back({name, std::to_string(value)}); }
+  void list(const std::string& name, std::uint32_t value) { list(name, std::uint64_t{value}); }
+  void list(const std::string& name, std::uint16_t value) { list(name, std::uint64_t{value}); }
+  void list(const std::string& name, std::uint8_t value) { list(name, std::uint64_t{value}); }
+  void list(const std::string& name, std::int32_t value) { list(name, std::int64_t{value}); }
+  void list(const std::string& name, double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    fields.push_back({name, formatDecimal(value) + " (" + hexBits(bits) + ")"});
+  }
+  template <class Overflow>
+  void list(const std::string& name, const BasicFixed<std::int64_t, 32, Overflow>& value) {
+    fields.push_back(
+        {name, formatDecimal(value) + " (" + hexBits(static_cast<std::uint64_t>(value.raw())) + ")"});
+  }
+  template <Scalar S>
+  void list(const std::string& name, const Vector<S>& value) {
+    list(name + ".x", value.x);
+    list(name + ".y", value.y);
+  }
+  template <class Tag>
+  void list(const std::string& name, const Id<Tag>& id) {
+    fields.push_back(
+        {name, id.valid() ? std::to_string(id.index) + " (generation " + std::to_string(id.generation) + ")"
+                          : "none"});
+  }
+  template <class T>
+  requires std::is_enum_v<T>
+  void list(const std::string& name, T value) { list(name, static_cast<std::underlying_type_t<T>>(value)); }
+  template <class T>
+  requires requires(const T& t) {
+    t.mantissa();
+    t.exponent();
+  }
+  void list(const std::string& name, const T& value) {
+    fields.push_back({name, std::to_string(value.mantissa()) + " * 2^" + std::to_string(value.exponent())});
+  }
+  template <class T>
+  requires requires(const T& t, FieldLister& lister) { T::fields(t, lister); }
+  void list(const std::string& name, const T& value) {
+    const std::string outer = std::exchange(prefix_, name + ".");
+    T::fields(value, *this);
+    prefix_ = outer;
+  }
+
+  std::string prefix_;
+  std::string last_;
+  std::uint32_t repeats_ = 0;
+};
+
+template <class T>
+std::vector<Field> fieldsOf(const T& record) {
+  FieldLister lister;
+  T::fields(record, lister);
+  return std::move(lister.fields);
+}
+
+/// Collects differences until there are enough.
+class Collector {
+ public:
+  explicit Collector(std::uint32_t most) : most_(most) {}
+
+  bool full() const { return found.size() >= most_; }
+  void add(const std::string& object, const std::string& field, const std::string& a, const std::string& b) {
+    if (!full()) found.push_back({object, field, a, b});
+  }
+  void exists(const std::string& object, bool inA) {
+    add(object, "exists", inA ? "yes" : "no", inA ? "no" : "yes");
+  }
+  /// name() is asked only for an object that differs: most are equal.
+  template <class T, class Name>
+  void compare(const T& a, const T& b, Name&& name) {
+    if (full()) return;
+    const std::vector<Field> fieldsA = fieldsOf(a);
+    const std::vector<Field> fieldsB = fieldsOf(b);
+    if (fieldsA == fieldsB) return;
+    const std::string object = name();
+    for (std::uint32_t i = 0; i < std::max(fieldsA.size(), fieldsB.size()); ++i) {
+      const Field& either = i < fieldsA.size() ? fieldsA[i] : fieldsB[i];
+      const std::string textA = i < fieldsA.size() ? fieldsA[i].text : "none";
+      const std::string textB = i < fieldsB.size() ? fieldsB[i].text : "none";
+      if (textA != textB) add(object, either.name, textA, textB);
+    }
+  }
+  /// The slots of two maps, side by side.
+  template <class Map, class Name>
+  void compareSlots(const Map& a, const Map& b, Name&& name) {
+    const auto generation = [](const Map& map, std::uint32_t i) {
+      return i < map.slots() ? std::to_string(map.generationAt(i)) : "none";
+    };
+    for (std::uint32_t i = 0; i < std::max(a.slots(), b.slots()) && !full(); ++i) {
+      const bool inA = i < a.slots() && a.aliveAt(i);
+      const bool inB = i < b.slots() && b.aliveAt(i);
+      if (inA != inB) {
+        exists(name(inA ? a : b, i), inA);
+      } else if (inA) {
+        if (a.generationAt(i) != b.generationAt(i)) {
+          add(name(a, i), "generation", generation(a, i), generation(b, i));
+        }
+        compare(a.valueAt(i), b.valueAt(i), [&] { return name(a, i); });
+      } else if (generation(a, i) != generation(b, i)) {
+        add(name(i < a.slots() ? a : b, i), "generation", generation(a, i), generation(b, i));
+      }
+    }
+  }
+  /// Two sorted lists, side by side.
+  template <class T, class Less, class Name>
+  void compareLists(const std::vector<T>& a, const std::vector<T>& b, Less&& less, Name&& name) {
+    auto inA = a.begin();
+    auto inB = b.begin();
+    while ((inA != a.end() || inB != b.end()) && !full()) {
+      if (inB == b.end() || (inA != a.end() && less(*inA, *inB))) {
+        exists(name(*inA++), true);
+      } else if (inA == a.end() || less(*inB, *inA)) {
+        exists(name(*inB++), false);
+      } else {
+        compare(*inA, *inB, [&] { return name(*inA); });
+        ++inA;
+        ++inB;
+      }
+    }
+  }
+
+  std::vector<FieldDifference> found;
+
+ private:
+  std::uint32_t most_;
+};
+
+/// The clock and the like, as a record.
+template <Scalar S>
+struct Frame {
+  const WorldState<S>& world;
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("stamp", self.world.stamp);
+    visit("timeStep", self.world.timeStep);
+    visit("staticBody", self.world.staticBody);
+  }
+};
+
+template <Scalar S>
+std::string pairName(const Pair<S>& pair) {
+  return "pair of shapes " + std::to_string(pair.a.index) + " and " + std::to_string(pair.b.index);
+}
+
+template <Scalar S>
+bool pairLess(const Pair<S>& a, const Pair<S>& b) {
+  return std::pair(a.a.index, a.b.index) < std::pair(b.a.index, b.b.index);
+}
+
+std::string bindingName(const HandlerBinding& binding) {
+  return "handler of types " + std::to_string(binding.typeA) + " and " + std::to_string(binding.typeB);
+}
+
+bool bindingLess(const HandlerBinding& a, const HandlerBinding& b) {
+  return std::tuple(a.kind, a.typeA, a.typeB) < std::tuple(b.kind, b.typeA, b.typeB);
+}
+
+}  // namespace
+
+template <Scalar S>
+std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldState<S>& b, std::uint32_t most) {
+  Collector all(most);
+  all.compare(a.settings, b.settings, [] { return "settings"; });
+  all.compare(Frame<S>{a}, Frame<S>{b}, [] { return "clock"; });
+  all.compareSlots(a.bodies, b.bodies,
+                   [](const auto&, std::uint32_t i) { return "body " + std::to_string(i); });
+  all.compareSlots(a.shapes, b.shapes, [](const auto& shapes, std::uint32_t i) {
+    const std::string shape = "shape " + std::to_string(i);
+    return shapes.aliveAt(i) ? shape + " of body " + std::to_string(shapes.valueAt(i).body().index) : shape;
+  });
+  all.compareLists(a.pairs, b.pairs, pairLess<S>, pairName<S>);
+  all.compareLists(a.handlers, b.handlers, bindingLess, bindingName);
+  return std::move(all.found);
+}
+
+namespace {
+
+template <Scalar S>
+struct Describer {
+  template <class T>
+  std::string operator()(const T& plain) const {
+    std::string text;
+    for (const Field& field : fieldsOf(plain))
+      text += (text.empty() ? "" : ", ") + field.name + " " + field.text;
+    return text;
+  }
+  std::string operator()(const Spawn<S>& spawn) const {
+    return (*this)(spawn.body) + ", " + std::to_string(spawn.shapes.size()) + " shapes";
+  }
+  std::string operator()(const UserInput& input) const {
+    return std::to_string(input.bytes.size()) + " bytes";
+  }
+};
+
+}  // namespace
+
+template <Scalar S>
+std::string describe(const Command<S>& command) {
+  return std::string(commandName(kindOf(command))) + ": " + std::visit(Describer<S>(), command);
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template std::vector<FieldDifference> differences<double>(const WorldState<double>&,
+                                                          const WorldState<double>&, std::uint32_t);
+template std::string describe<double>(const Command<double>&);
+#endif
+template std::vector<FieldDifference> differences<Fixed>(const WorldState<Fixed>&, const WorldState<Fixed>&,
+                                                         std::uint32_t);
+template std::string describe<Fixed>(const Command<Fixed>&);
+template std::vector<FieldDifference> differences<CheckedFixed>(const WorldState<CheckedFixed>&,
+                                                                const WorldState<CheckedFixed>&,
+                                                                std::uint32_t);
+template std::string describe<CheckedFixed>(const Command<CheckedFixed>&);
+
+}  // namespace samestep

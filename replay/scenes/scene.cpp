@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/scene.h>
+
+#include "base/require_ieee.h"
+#include "scenes/scene_builder.h"
+
+namespace samestep {
+namespace {
+
+/// The body that a command is for; null for a spawn or a user's input.
+template <Scalar S>
+BodyId* targetOf(Command<S>& command) {
+  return std::visit(
+      [](auto& c) -> BodyId* {
+        if constexpr (requires {
+                        { c.body } -> std::same_as<BodyId&>;
+                      })
+          return &c.body;
+        return nullptr;
+      },
+      command);
+}
+
+}  // namespace
+
+template <Scalar S>
+Scene<S>::Scene(const SceneSource& source) {
+  SceneBuilder<S>(*this, source.document()).build();
+}
+
+template <Scalar S>
+const Command<S>* Scene<S>::nextCommand() {
+  while (next_ < events_.size() && events_[next_].tick <= tick() + 1) {
+    Event& event = events_[next_++];
+    if (BodyId* target = targetOf(event.command)) {
+      *target = names_[event.name];
+      if (!space_.contains(*target)) continue;
+    } else if (kindOf(event.command) == CommandKind::spawn) {
+      names_[event.name] = space_.state().bodies.nextId();
+    }
+    return &event.command;
+  }
+  return nullptr;
+}
+
+template <Scalar S>
+void Scene<S>::step() {
+  while (const Command<S>* command = nextCommand()) apply(space_, *command);
+  space_.step(timeStep_);
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class Scene<double>;
+#endif
+template class Scene<Fixed>;
+template class Scene<CheckedFixed>;
+
+}  // namespace samestep

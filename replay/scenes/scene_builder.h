@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <samestep/named_handlers.h>
+#include <samestep/scene.h>
+
+#include "scenes/scene_cursor.h"
+#include "scenes/scene_document.h"
+
+namespace samestep {
+
+/// What a scene makes of each shape of a CSV file of bodies.
+template <Scalar S>
+struct CsvSurface {
+  S density{1};
+  S friction{};
+  S elasticity{};
+};
+
+/// Turns a document into a world and events.
+template <Scalar S>
+class SceneBuilder {
+ public:
+  SceneBuilder(Scene<S>& scene, const SceneSource::Document& document) : scene_(scene), document_(document) {}
+
+  void build();
+
+ private:
+  using Event = typename Scene<S>::Event;
+  static constexpr std::uint32_t kNoName = 0xffffffffu;
+
+  void buildFile();
+  void buildPyramid(std::uint32_t rows);
+  void buildSoup(std::uint32_t count);
+
+  void readSettings(const Cursor& at);
+  void readHandlers(const Cursor& at);
+  void readBodies(const Cursor& at);
+  void readCsvBodies(const Cursor& at);
+  void readGrid(const Cursor& at, const Spawn<S>& body, const std::string& name);
+  void readEvents(const Cursor& at);
+  void readInputs(const Cursor& at);
+
+  Spawn<S> readBody(const Cursor& at);
+  Shape<S> readShape(const Cursor& at);
+  Shape<S> readGeometry(const Cursor& at);
+  std::vector<Vector<S>> readPoints(const Cursor& at);
+  void readEvent(const Cursor& at, std::uint32_t spawned);
+
+  BodyId addBody(const Spawn<S>& body);
+  void addNamed(const Cursor& at, const std::string& name, const Spawn<S>& body);
+  std::uint32_t newName(const Cursor& at, const std::string& name);
+  /// kNoName where there is none.
+  std::uint32_t nameOf(const std::string& name) const;
+  void addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name, Command<S>&& command);
+
+  Scene<S>& scene_;
+  const SceneSource::Document& document_;
+  std::map<std::string, std::uint32_t> names_;
+};
+
+}  // namespace samestep

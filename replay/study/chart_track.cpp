@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "study/chart_track.h"
+
+#include <algorithm>
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+namespace {
+
+template <Scalar S>
+double plain(S value) {
+  return static_cast<double>(value);
+}
+
+/// Blocks on a slope: with friction mu one stays where tan(angle) <= mu, else it slides with
+/// g (sin(angle) - mu cos(angle)). The slope's friction is 1, so that a contact has the block's own.
+Spots slidBlocks(const StartWorld& start, double time) {
+  Spots spots;
+  for (const StartWorld::Moving& block : start.bodies) {
+    const double along = start.gravityX * block.cosine + start.gravityY * block.sine;
+    const double into = start.gravityX * block.sine - start.gravityY * block.cosine;
+    const double held = std::min(block.friction * into, abs(along));
+    const double path = (along < 0 ? along + held : along - held) * time * time / 2;
+    spots.push_back({block.spot.body, block.spot.x + path * block.cosine, block.spot.y + path * block.sine});
+  }
+  return spots;
+}
+
+/// How high a ball is that falls from a height and bounces with restitution e: from each bounce it leaves
+/// with e times the speed it came with.
+double bouncedHeight(double height, double gravity, double e, double time) {
+  double speed = sqrt(2 * gravity * height);
+  const double fall = speed / gravity;
+  if (time <= fall) return height - gravity * time * time / 2;
+  time -= fall;
+  // A flight shorter than this is rest.
+  constexpr double kRest = 1e-6;
+  for (;;) {
+    speed *= e;
+    const double flight = 2 * speed / gravity;
+    if (flight < kRest) return 0;
+    if (time <= flight) return speed * time - gravity * time * time / 2;
+    time -= flight;
+  }
+}
+
+/// Balls that do not spin, falling on a floor of elasticity 1.
+Spots bouncedBalls(const StartWorld& start, double time) {
+  Spots spots;
+  for (const StartWorld::Moving& ball : start.bodies) {
+    if (ball.radius == 0 || ball.turning != 0) continue;
+    const double rest = start.floor + ball.radius;
+    const double height = bouncedHeight(ball.spot.y - rest, -start.gravityY, ball.elasticity, time);
+    spots.push_back({ball.spot.body, ball.spot.x, rest + height});
+  }
+  return spots;
+}
+
+/// Rigid boxes in balance.
+Spots whereTheyBegan(const StartWorld& start, double) {
+  Spots spots;
+  for (const StartWorld::Moving& body : start.bodies) spots.push_back(body.spot);
+  return spots;
+}
+
+constexpr ExactAnswer kExactAnswers[] = {
+    // The first block reaches the end of the slope after 190 steps.
+    {"incline", 120, 180, "the blocks from where gravity and friction bring them", slidBlocks},
+    {"bounce", 180, 1u << 20, "the balls from their exact paths", bouncedBalls},
+    {"pyramid", 330, 1u << 20, "the boxes from where they began, as rigid boxes stay there", whereTheyBegan},
+};
+
+}  // namespace
+
+const ExactAnswer* exactAnswerOf(std::string_view scene) {
+  for (const ExactAnswer& answer : kExactAnswers) {
+    if (scene.starts_with(answer.scenes)) return &answer;
+  }
+  return nullptr;
+}
+
+template <Scalar S>
+Spots spotsOf(const Space<S>& space) {
+  Spots spots;
+  space.eachBody([&](const Body<S>& body) {
+    const Vector<S>& center = body.worldCenter();
+    if (body.isDynamic()) spots.push_back({body.id(), plain(center.x), plain(center.y)});
+  });
+  return spots;
+}
+
+template <Scalar S>
+StartWorld startOf(const Space<S>& space) {
+  StartWorld start;
+  start.gravityX = plain(space.gravity().x);
+  start.gravityY = plain(space.gravity().y);
+  bool found = false;
+  space.eachBody([&](const Body<S>& body) {
+    const Shape<S>* first = nullptr;
+    space.eachShape(body.id(), [&](const Shape<S>& shape) {
+      if (first == nullptr) first = &shape;
+      const double top = plain(boundingBox(shape, body.transform()).top);
+      if (body.isDynamic() || (found && top <= start.floor)) return;
+      start.floor = top;
+      found = true;
+    });
+    if (first == nullptr || !body.isDynamic()) return;
+    const Vector<S>& center = body.worldCenter();
+    start.bodies.push_back({{body.id(), plain(center.x), plain(center.y)},
+                            plain(body.rotation().x),
+                            plain(body.rotation().y),
+                            plain(body.angularVelocity()),
+                            first->type() == ShapeType::circle ? plain(first->radius()) : 0,
+                            plain(first->friction()),
+                            plain(first->elasticity())});
+  });
+  return start;
+}
+
+namespace {
+
+struct Sum {
+  double squares = 0;
+  double count = 0;
+
+  void take(const Spots& a, const Spots& b) {
+    auto other = b.begin();
+    for (const Spot& spot : a) {
+      while (other != b.end() && other->body.index < spot.body.index) ++other;
+      if (other == b.end()) return;
+      if (other->body != spot.body) continue;
+      const double x = spot.x - other->x;
+      const double y = spot.y - other->y;
+      squares += x * x + y * y;
+      count += 1;
+    }
+  }
+  double root() const { return count > 0 ? sqrt(squares / count) : 0; }
+};
+
+}  // namespace
+
+double distanceBetween(const Spots& a, const Spots& b) {
+  Sum sum;
+  sum.take(a, b);
+  return sum.root();
+}
+
+double distanceBetween(const Track& a, const Track& b) {
+  Sum sum;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) sum.take(a[i], b[i]);
+  return sum.root();
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template Spots spotsOf<double>(const Space<double>&);
+template StartWorld startOf<double>(const Space<double>&);
+#endif
+template Spots spotsOf<Fixed>(const Space<Fixed>&);
+template StartWorld startOf<Fixed>(const Space<Fixed>&);
+
+}  // namespace samestep

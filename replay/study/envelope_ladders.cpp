@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+// The ladders: worlds that a number makes harder, and when they have failed.
+#include <algorithm>
+
+#include <samestep/circle_shape.h>
+#include <samestep/poly_shape.h>
+
+#include "base/require_ieee.h"
+#include "study/degenerate_shapes.h"
+#include "study/envelope.h"
+
+namespace samestep {
+namespace {
+
+constexpr int kStepsPerSecond = 60;
+
+/// A world with a static box in it, solved by a setting.
+template <Scalar S>
+class Trial {
+ public:
+  Trial(const Setting& setting, const Vector<S>& gravity) {
+    useMethod(space_, *setting.method, setting.count);
+    space_.setGravity(gravity);
+  }
+
+  void addStaticBox(const Vector<S>& center, S width, S height) {
+    Body<S> body = Body<S>::fixedInPlace();
+    body.setPosition(center);
+    add(body, boxShape<S>({}, width, height), ratio<S>(6, 10));
+  }
+  /// A box of 1 m by 1 m.
+  BodyId addBox(const Vector<S>& center, S mass) {
+    Body<S> body;
+    body.setPosition(center);
+    Shape<S> shape = boxShape<S>({}, S(1), S(1));
+    shape.setMass(mass);
+    return add(body, shape, ratio<S>(6, 10));
+  }
+  BodyId addBullet(const Vector<S>& center, S radius, const Vector<S>& velocity) {
+    Body<S> body;
+    body.setPosition(center);
+    body.setVelocity(velocity);
+    Shape<S> shape = circleShape<S>({}, radius, Vector<S>());
+    shape.setDensity(S(1));
+    return add(body, shape, ratio<S>(6, 10));
+  }
+
+  /// A static body of any shape.
+  void addStatic(const Shape<S>& shape, const Vector<S>& position, S angle) {
+    Body<S> body = Body<S>::fixedInPlace();
+    body.setPosition(position);
+    body.setAngle(angle);
+    add(body, shape, ratio<S>(6, 10));
+  }
+  /// A body of 1 kg, with the moment of its shape where that is one a body may have.
+  BodyId addFree(const Shape<S>& shape, const Vector<S>& position, S angle) {
+    Body<S> body(S(1), max(toScalar<S>(shape.massInfo().unitMoment), ratio<S>(1, 1 << 10)));
+    body.setCenterOfMass(shape.centerOfMass());
+    body.setAngle(angle);
+    body.setPosition(position);
+    return add(body, shape, ratio<S>(6, 10));
+  }
+
+  /// Makes steps for so long, and stops where `stands` says no, asked after each second.
+  template <class Stands>
+  bool stand(int seconds, Stands&& stands) {
+    for (int second = 0; second < seconds; ++second) {
+      run(kStepsPerSecond);
+      if (!stands()) return false;
+    }
+    return true;
+  }
+  void run(int steps) {
+    for (int i = 0; i < steps; ++i) space_.step(ratio<S>(1, kStepsPerSecond));
+  }
+
+  const Body<S>& body(BodyId id) const { return space_.body(id); }
+
+ private:
+  BodyId add(const Body<S>& body, Shape<S> shape, S friction) {
+    const BodyId id = space_.add(body);
+    shape.setBody(id);
+    shape.setFriction(friction);
+    space_.add(shape);
+    return id;
+  }
+
+  Space<S> space_;
+};
+
+/// Calls visit(S()) with the scalar of the setting.
+template <class Visit>
+bool inScalarOf(const Setting& setting, Visit&& visit) {
+  return withScalarOf(*setting.method, std::forward<Visit>(visit));
+}
+
+bool upright(auto angle) {
+  using S = decltype(angle);
+  return abs(angle) <= ratio<S>(1, 5);
+}
+
+template <Scalar S>
+bool stackHolds(const Setting& setting, int boxes) {
+  Trial<S> trial(setting, {S(0), S(-10)});
+  trial.addStaticBox({S(0), S(-1)}, S(20), S(2));
+  std::vector<BodyId> stack;
+  for (int i = 0; i < boxes; ++i) {
+    const S aside = ratio<S>(i % 2 == 0 ? -1 : 1, 100);
+    stack.push_back(trial.addBox({aside, ratio<S>(2 * i + 1, 2)}, S(1)));
+  }
+  const S sunk = ratio<S>(boxes, 20);
+  return trial.stand(10, [&] {
+    for (int i = 0; i < boxes; ++i) {
+      const Body<S>& box = trial.body(stack[static_cast<std::uint32_t>(i)]);
+      const Vector<S>& center = box.worldCenter();
+      if (!upright(box.angle()) || abs(center.x) > ratio<S>(1, 2)) return false;
+      if (center.y < ratio<S>(2 * i + 1, 2) - sunk) return false;
+    }
+    return true;
+  });
+}
+
+template <Scalar S>
+bool massRatioHolds(const Setting& setting, int kilograms) {
+  Trial<S> trial(setting, {S(0), S(-10)});
+  trial.addStaticBox({S(0), S(-1)}, S(20), S(2));
+  const BodyId light = trial.addBox({S(0), ratio<S>(1, 2)}, S(1));
+  const BodyId heavy = trial.addBox({ratio<S>(1, 100), ratio<S>(3, 2)}, S(kilograms));
+  return trial.stand(10, [&] {
+    const Vector<S>& center = trial.body(heavy).worldCenter();
+    return upright(trial.body(light).angle()) && upright(trial.body(heavy).angle()) &&
+           abs(center.x) <= ratio<S>(1, 2) && center.y >= ratio<S>(14, 10);
+  });
+}
+
+/// Bullets side by side, each a 16th of a step's way farther off than the last, so that some step ends
+/// anywhere between in front of the wall and behind it.
+template <Scalar S>
+bool bulletsHold(const Setting& setting, int speed, S thickness) {
+  constexpr int kBullets = 16;
+  constexpr int kFlight = 2;
+  Trial<S> trial(setting, {});
+  trial.addStaticBox({thickness / S(2), S(kBullets / 2)}, thickness, S(kBullets + 4));
+  std::vector<BodyId> bullets;
+  for (int i = 0; i < kBullets; ++i) {
+    const S distance = S(kFlight) + ratio<S>(speed, kStepsPerSecond) * ratio<S>(i, kBullets);
+    bullets.push_back(trial.addBullet({-distance, S(i)}, ratio<S>(1, 10), {S(speed), S(0)}));
+  }
+  trial.run(kFlight * kStepsPerSecond / speed + kStepsPerSecond);
+  for (const BodyId id : bullets) {
+    if (trial.body(id).worldCenter().x > S(0)) return false;
+  }
+  return true;
+}
+
+template <int kSixteenths>
+bool bulletsHoldAt(const Setting& setting, int speed) {
+  return inScalarOf(setting, [&](auto scalar) {
+    using S = decltype(scalar);
+    return bulletsHold<S>(setting, speed, ratio<S>(kSixteenths, 16));
+  });
+}
+
+/// Whether a shape may be that of a body that moves.
+bool mayMove(const NastyShape& shape) { return makeNasty<Fixed>(shape).extent() <= Fixed(kMaxDynamicExtent); }
+
+template <Scalar S>
+bool shapeRests(const Setting& setting, const NastyShape& nasty) {
+  if (!mayMove(nasty)) return true;
+  Trial<S> trial(setting, {S(0), S(-10)});
+  trial.addStaticBox({S(0), S(-1)}, S(2000), S(2));
+  const Shape<S> shape = makeNasty<S>(nasty);
+  const S bottom = boundingBox(shape, Transform<S>()).bottom;
+  const BodyId id = trial.addFree(shape, {S(0), ratio<S>(1, 10) - bottom}, S(0));
+  return trial.stand(10, [&] {
+    const BB<S> box = boundingBox(shape, trial.body(id).transform());
+    return box.bottom >= -ratio<S>(1, 20) && box.bottom <= ratio<S>(1, 10);
+  });
+}
+
+/// One of the two is held, the other free; so is A where B is too large to move.
+template <Scalar S>
+bool pairParts(const Setting& setting, const NastyPair& pair) {
+  constexpr int kSeconds = 2;
+  const NastyShape &nastyA = nastyShapes()[static_cast<std::size_t>(pair.shapeA)],
+                   &nastyB = nastyShapes()[static_cast<std::size_t>(pair.shapeB)];
+  const Shape<S> shapeA = makeNasty<S>(nastyA), shapeB = makeNasty<S>(nastyB);
+  const Vector<S> placeA = fromUnits<S>(pair.positionA), placeB = fromUnits<S>(pair.positionB);
+  const S angleA = fromUnits<S>(pair.angleA), angleB = fromUnits<S>(pair.angleB);
+  Trial<S> trial(setting, {});
+  const bool freeB = mayMove(nastyB);
+  if (!freeB && !mayMove(nastyA)) return true;
+  trial.addStatic(freeB ? shapeA : shapeB, freeB ? placeA : placeB, freeB ? angleA : angleB);
+  const BodyId id = trial.addFree(freeB ? shapeB : shapeA, freeB ? placeB : placeA, freeB ? angleB : angleA);
+  S most = S(0);
+  for (int step = 0; step < kSeconds * kStepsPerSecond; ++step) {
+    const Vector<S> before = trial.body(id).worldCenter();
+    trial.run(1);
+    most = max(most, length(trial.body(id).worldCenter() - before) * S(kStepsPerSecond));
+  }
+  return most <= S(10);
+}
+
+/// Whether each of the first `rung` holds, as holds(S(), thing) has it.
+template <class Thing, class Holds>
+bool firstHold(const Setting& setting, std::span<const Thing> things, int rung, Holds&& holds) {
+  return std::all_of(things.begin(), things.begin() + rung, [&](const Thing& thing) {
+    return inScalarOf(setting, [&](auto scalar) { return holds(scalar, thing); });
+  });
+}
+
+constexpr int kTopSpeed = 1024;
+constexpr const char* kBulletTrial =
+    "16 bullets of 0.1 m radius fly at a static wall, each starting 1/16 of a step's way farther off than "
+    "the "
+    "last";
+constexpr const char* kBulletFails =
+    "a second after the impact the centre of any is in the wall or beyond it";
+
+const Ladder kLadders[] = {
+    {"stack", "boxes in a stack that stands for 10 s",
+     "boxes of 1 m and 1 kg stand on each other, alternately 1 cm to the left and to the right",
+     "after any of 10 s a box has turned by more than 0.2 rad, is more than 0.5 m aside, or has sunk by more "
+     "than 5 % of the stack's height",
+     512,
+     [](const Setting& setting, int rung) {
+       return inScalarOf(setting, [&](auto scalar) { return stackHolds<decltype(scalar)>(setting, rung); });
+     }},
+    {"mass-ratio", "kg on a box of 1 kg that bears it for 10 s",
+     "a heavy box of 1 m stands on one of 1 m and 1 kg, 1 cm aside",
+     "after any of 10 s either has turned by more than 0.2 rad, or the heavy one is more than 0.5 m aside or "
+     "has sunk by more than 0.1 m",
+     1 << 19,
+     [](const Setting& setting, int rung) {
+       return inScalarOf(setting,
+                         [&](auto scalar) { return massRatioHolds<decltype(scalar)>(setting, rung); });
+     }},
+    {"bullet-100cm", "m/s of a bullet that a wall of 1 m stops", kBulletTrial, kBulletFails, kTopSpeed,
+     bulletsHoldAt<16>},
+    {"bullet-25cm", "m/s that a wall of 25 cm stops", kBulletTrial, kBulletFails, kTopSpeed,
+     bulletsHoldAt<4>},
+    {"bullet-6cm", "m/s that a wall of 6.25 cm stops", kBulletTrial, kBulletFails, kTopSpeed,
+     bulletsHoldAt<1>},
+    {"shapes", "degenerate shapes, in turn, that rest on a floor for 10 s",
+     "the shapes of replay/study/degenerate_shapes.cpp one by one, each alone on a body of 1 kg, fall from "
+     "10 cm; "
+     "those too large for a body that moves count as resting",
+     "after any of 10 s one is more than 5 cm in the floor, or more than 10 cm above it",
+     static_cast<int>(nastyShapes().size()),
+     [](const Setting& setting, int rung) {
+       return firstHold(setting, nastyShapes(), rung, [&](auto scalar, const NastyShape& shape) {
+         return shapeRests<decltype(scalar)>(setting, shape);
+       });
+     }},
+    {"pairs", "degenerate pairs, in turn, that part at 10 m/s at most",
+     "the pairs of replay/study/degenerate_shapes.cpp one by one, many of them as deep in each other as can "
+     "be, "
+     "one held and the other a free body of 1 kg without gravity; two that are too large to move count as "
+     "parted",
+     "in any step of 2 s the free one moves faster", static_cast<int>(nastyPairs().size()),
+     [](const Setting& setting, int rung) {
+       return firstHold(setting, nastyPairs(), rung, [&](auto scalar, const NastyPair& pair) {
+         return pairParts<decltype(scalar)>(setting, pair);
+       });
+     }},
+};
+
+}  // namespace
+
+std::span<const Ladder> ladders() { return kLadders; }
+
+}  // namespace samestep

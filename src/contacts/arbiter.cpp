@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/arbiter.h>
+
+#include <samestep/error.h>
+
+#include "base/require_ieee.h"
+#include "contacts/contact_geometry.h"
+#include "contacts/contact_row.h"
+
+namespace samestep {
+
+template <Scalar S>
+void Arbiter<S>::setRestitution(S restitution) {
+  require<Fault::ValueOutOfRange>(restitution <= S(kMaxMaterial) && isFinite(restitution));
+  require<Fault::NegativeElasticity>(restitution >= S(0));
+  pair_.elasticity = restitution;
+}
+
+template <Scalar S>
+void Arbiter<S>::setFriction(S friction) {
+  require<Fault::ValueOutOfRange>(friction <= S(kMaxMaterial) && isFinite(friction));
+  require<Fault::NegativeFriction>(friction >= S(0));
+  pair_.friction = friction;
+}
+
+template <Scalar S>
+void Arbiter<S>::setSurfaceVelocity(const Vector<S>& velocity) {
+  require<Fault::ValueOutOfRange>(within(velocity, S(kMaxMaterial)));
+  pair_.surfaceVelocity = swapped_ ? -velocity : velocity;
+}
+
+template <Scalar S>
+Vector<S> Arbiter<S>::normal() const {
+  const Vector<S> n = worldNormal(pair_, *bodies_[0]);
+  return swapped_ ? -n : n;
+}
+
+template <Scalar S>
+Vector<S> Arbiter<S>::pointA(int index) const {
+  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count());
+  const Contact<S>& contact = pair_.contacts[index];
+  return swapped_ ? bodies_[1]->toWorld(contact.anchorB) : bodies_[0]->toWorld(contact.anchorA);
+}
+
+template <Scalar S>
+Vector<S> Arbiter<S>::pointB(int index) const {
+  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count());
+  const Contact<S>& contact = pair_.contacts[index];
+  return swapped_ ? bodies_[0]->toWorld(contact.anchorA) : bodies_[1]->toWorld(contact.anchorB);
+}
+
+template <Scalar S>
+S Arbiter<S>::depth(int index) const {
+  return dot(pointB(index) - pointA(index), normal());
+}
+
+template <Scalar S>
+ContactPointSet<S> Arbiter<S>::contactPointSet() const {
+  ContactPointSet<S> set;
+  set.count = count();
+  set.normal = normal();
+  for (int i = 0; i < set.count; ++i) set.points[i] = {pointA(i), pointB(i), depth(i)};
+  return set;
+}
+
+namespace {
+
+/// Twice as far as any point of a shape of a body that moves can be: what a contact turns stays in range.
+template <Scalar S>
+bool isWithinReach(const Body<S>& body, const Vector<S>& point) {
+  return body.type() == BodyType::staticBody || within(point - body.worldCenter(), S(4 * kMaxDynamicExtent));
+}
+
+}  // namespace
+
+template <Scalar S>
+void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
+  require<Fault::ImmutableNumContacts>(set.count == count());
+  const S slack = ratio<S>(1, 1024);
+  const S size = within(set.normal, S(2)) ? length(set.normal) : S(0);
+  require<Fault::ValueOutOfRange>(size >= S(1) - slack && size <= S(1) + slack,
+                                  "The normal of a contact is not a unit vector.");
+  const Body<S>& first = swapped_ ? *bodies_[1] : *bodies_[0];
+  const Body<S>& second = swapped_ ? *bodies_[0] : *bodies_[1];
+  for (int i = 0; i < set.count; ++i) {
+    require<Fault::ValueOutOfRange>(
+        within(set.points[i].pointA, kMaxWorldExtent<S>) && within(set.points[i].pointB, kMaxWorldExtent<S>),
+        "A point of a contact is outside the world.");
+    require<Fault::ValueOutOfRange>(
+        isWithinReach(first, set.points[i].pointA) && isWithinReach(second, set.points[i].pointB),
+        "A point of a contact is more than 2^10 m from the centre of mass of a body that moves.");
+  }
+
+  pair_.localNormal = unrotate(swapped_ ? -set.normal : set.normal, bodies_[0]->rotation());
+  for (int i = 0; i < set.count; ++i) {
+    Contact<S>& contact = pair_.contacts[i];
+    contact.anchorA = bodies_[0]->toLocal(swapped_ ? set.points[i].pointB : set.points[i].pointA);
+    contact.anchorB = bodies_[1]->toLocal(swapped_ ? set.points[i].pointA : set.points[i].pointB);
+  }
+  pair_.manifold = Manifold::unknown;
+}
+
+namespace {
+
+/// kg of the lighter of two bodies, of which one can be moved.
+template <Scalar S>
+Scaled<S> lighterMass(const Body<S>& a, const Body<S>& b) {
+  return toScaled((a.inverseMass() > b.inverseMass() ? a : b).mass());
+}
+
+}  // namespace
+
+template <Scalar S>
+Vector<S> Arbiter<S>::totalImpulse() const {
+  Scaled<S> x{}, y{};
+  const Vector<S> n = worldNormal(pair_, *bodies_[0]);
+  for (int i = 0; i < count(); ++i) {
+    const Contact<S>& contact = pair_.contacts[i];
+    const Vector<S> speed = rotate(n, Vector<S>(contact.normalTotal, contact.tangentTotal));
+    x = x + toScaled(speed.x);
+    y = y + toScaled(speed.y);
+  }
+  const Scaled<S> mass = lighterMass(*bodies_[0], *bodies_[1]);
+  const Vector<S> impulse(saturated<S>(x * mass), saturated<S>(y * mass));
+  return swapped_ ? -impulse : impulse;
+}
+
+template <Scalar S>
+S Arbiter<S>::totalKE() const {
+  if (pair_.solved == 0) return S(0);
+  const Body<S>& a = *bodies_[0];
+  const Body<S>& b = *bodies_[1];
+  const PairResponse<S> whole = respond(a, b);
+  const Vector<S> n = worldNormal(pair_, a);
+  const Vector<S> t = perp(n);
+  const S loss = (S(1) - pair_.elasticity) / (S(1) + pair_.elasticity);
+  Scaled<S> sum{};
+  for (int i = 0; i < count(); ++i) {
+    const Contact<S>& contact = pair_.contacts[i];
+    const auto [armA, armB, separation] = contactArms(contact, n, a, b);
+    const PairResponse<S> response = whole.at(armA, armB);
+    const Scaled<S> normalK = toScaled(effectiveInverseMass(response, cross(armA, n), cross(armB, n)));
+    const Scaled<S> tangentK = toScaled(effectiveInverseMass(response, cross(armA, t), cross(armB, t)));
+    const Scaled<S> normal = toScaled(contact.normalTotal);
+    const Scaled<S> tangent = toScaled(contact.tangentTotal);
+    sum = sum + toScaled(loss) * normal * normal * normalK + tangent * tangent * tangentK;
+  }
+  return saturated<S>(sum * lighterMass(a, b));
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class Arbiter<double>;
+#endif
+template class Arbiter<Fixed>;
+template class Arbiter<CheckedFixed>;
+
+}  // namespace samestep

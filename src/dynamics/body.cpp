@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/body.h>
+
+#include <samestep/error.h>
+#include <samestep/high_water.h>
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+namespace {
+
+constexpr const char* kBadPosition = "Body's position is invalid.";
+constexpr const char* kBadCenterOfMass = "Body's centre of mass is too far from its origin.";
+constexpr const char* kBadTimeStep = "The time step of a body is invalid.";
+constexpr const char* kBadVelocity = "Body's velocity is invalid.";
+constexpr const char* kBadForce = "Body's force is invalid.";
+constexpr const char* kBadAngle = "Body's angle is invalid.";
+constexpr const char* kBadAngularVelocity = "Body's angular velocity is invalid.";
+constexpr const char* kBadTorque = "Body's torque is invalid.";
+
+template <Scalar S>
+bool isNaN(S x) {
+  return !(x == x);
+}
+
+template <Scalar S>
+void checkMass(S mass) {
+  require<Fault::NaNMass>(!isNaN(mass));
+  require<Fault::NegativeMass>(mass >= S(0));
+  require<Fault::InfiniteMass>(isFinite(mass));
+  require<Fault::MassOutOfRange>(mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>));
+}
+
+template <Scalar S>
+void checkMoment(S moment) {
+  require<Fault::NaNMoment>(!isNaN(moment));
+  require<Fault::NegativeMoment>(moment >= S(0));
+  require<Fault::InfiniteMoment>(isFinite(moment));
+  require<Fault::MomentOutOfRange>(moment == S(0) || (moment >= kMinMoment<S> && moment <= kMaxMoment<S>));
+}
+
+/// What a force does to a thing of that inverse mass, kept where sums with gravity cannot overflow.
+template <Scalar S>
+S answer(S force, const Scaled<S>& inverse) {
+  if (force == S(0)) return S(0);
+  return toScalarWithin(toScaled(force) * inverse, S(1 << 30));
+}
+
+}  // namespace
+
+template <Scalar S>
+Body<S>::Body(S mass, S moment) {
+  checkMass(mass);
+  checkMoment(moment);
+
+  mass_ = mass;
+  moment_ = toScaled(moment);
+  derive();
+}
+
+template <Scalar S>
+Body<S> Body<S>::fixedInPlace() {
+  Body body;
+  body.setType(BodyType::staticBody);
+  return body;
+}
+
+template <Scalar S>
+Body<S> Body<S>::kinematic() {
+  Body body;
+  body.setType(BodyType::kinematicBody);
+  return body;
+}
+
+template <Scalar S>
+Body<S> Body<S>::nonRotating(S mass) {
+  Body body(mass, S(0));
+  body.rotates_ = 0;
+  return body;
+}
+
+template <Scalar S>
+Body<S> Body<S>::detached() const {
+  Body copy = *this;
+  copy.id_ = {};
+  copy.owner_ = 0;
+  return copy;
+}
+
+template <Scalar S>
+void Body<S>::derive() {
+  const SinCos<S> turn = sincos(angle_);
+  rotation_ = {turn.cos, turn.sin};
+  const Scaled<S> zero{};
+  const bool moves = isDynamic() && mass_ > S(0);
+  inverseMass_ = moves ? reciprocal(toScaled(mass_)) : zero;
+  inverseMoment_ = moves && rotates() && moment_ > zero ? reciprocal(moment_) : zero;
+  momentPerMass_ = toScalarWithin(inverseMoment_ * toScaled(mass_), kMaxRelativeMoment<S>);
+}
+
+template <Scalar S>
+bool Body<S>::wellFormed() const {
+  if (type_ > BodyType::staticBody || rotates_ > 1) return false;
+  if (!(mass_ == S(0) || (mass_ >= kMinMass<S> && mass_ <= kMaxMass<S>))) return false;
+  // What shapes of any supported size and mass can add up to, with room to spare.
+  const Scaled<S> zero{};
+  const Scaled<S> large = toScaled(kMaxMoment<S>) * toScaled(kMaxMoment<S>);
+  if (!(moment_ >= zero && moment_ <= large)) return false;
+  // A centre of mass at the end of its range, on a body at the end of the world.
+  const S far = kMaxWorldExtent<S> * S(3);
+  if (!within(centerOfMass_, kMaxCenterOfMass<S>) || !within(center_, far)) return false;
+  if (!within(velocity_, kMaxSpeed<S>) || !within(angularVelocity_, kMaxAngularSpeed<S>)) return false;
+  const bool still = velocity_ == Vector<S>() && angularVelocity_ == S(0);
+  if (type_ == BodyType::staticBody && !still) return false;
+  return within(angle_, kMaxAngle<S>) && within(force_, kMaxForce<S>) && within(torque_, kMaxForce<S>) &&
+         within(velocityBias_, kMaxSpeed<S>) && within(angularVelocityBias_, kMaxAngularSpeed<S>);
+}
+
+template <Scalar S>
+void Body<S>::setType(BodyType type) {
+  require<Fault::AttachedBody>(!id_.valid(),
+                               "The type of a body in a space is changed by the space: see Space::setType.");
+  type_ = type;
+  if (type == BodyType::staticBody) {
+    velocity_ = {};
+    angularVelocity_ = S(0);
+  }
+  derive();
+}
+
+template <Scalar S>
+S Body<S>::moment() const {
+  return saturated<S>(exactMoment());
+}
+
+template <Scalar S>
+void Body<S>::setMass(S mass) {
+  require<Fault::StaticBodyMass>(isDynamic());
+  checkMass(mass);
+
+  mass_ = mass;
+  derive();
+}
+
+template <Scalar S>
+void Body<S>::setMoment(S moment) {
+  require<Fault::StaticBodyMass>(isDynamic());
+  checkMoment(moment);
+
+  moment_ = toScaled(moment);
+  rotates_ = 1;
+  derive();
+}
+
+template <Scalar S>
+void Body<S>::setMassProperties(const MassProperties<S>& properties) {
+  const S mass = properties.mass;
+  require<Fault::IllegalBody>(mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>),
+                              "Body's mass, summed over its shapes, is outside the supported range.");
+  require<Fault::IllegalBody>(within(properties.centerOfMass, kMaxCenterOfMass<S>), kBadCenterOfMass);
+  const Vector<S> origin = position();
+
+  mass_ = mass;
+  moment_ = properties.moment;
+  centerOfMass_ = properties.centerOfMass;
+  center_ = origin + rotate(centerOfMass_, rotation_);
+  derive();
+}
+
+template <Scalar S>
+void Body<S>::setPosition(const Vector<S>& position) {
+  require<Fault::IllegalBody>(within(position, kMaxWorldExtent<S>), kBadPosition);
+
+  center_ = position + rotate(centerOfMass_, rotation_);
+}
+
+template <Scalar S>
+void Body<S>::setCenterOfMass(const Vector<S>& center) {
+  require<Fault::IllegalBody>(within(center, kMaxCenterOfMass<S>), kBadCenterOfMass);
+  const Vector<S> origin = position();
+
+  centerOfMass_ = center;
+  center_ = origin + rotate(centerOfMass_, rotation_);
+}
+
+template <Scalar S>
+void Body<S>::setVelocity(const Vector<S>& velocity) {
+  require<Fault::IllegalBody>(within(velocity, kMaxSpeed<S>), kBadVelocity);
+  require<Fault::IllegalBody>(type_ != BodyType::staticBody || velocity == Vector<S>(), kBadVelocity);
+
+  velocity_ = velocity;
+}
+
+template <Scalar S>
+void Body<S>::setForce(const Vector<S>& force) {
+  require<Fault::IllegalBody>(within(force, kMaxForce<S>), kBadForce);
+
+  force_ = force;
+}
+
+template <Scalar S>
+void Body<S>::setAngle(S angle) {
+  require<Fault::IllegalBody>(within(angle, kMaxAngle<S>), kBadAngle);
+  const Vector<S> origin = position();
+
+  angle_ = angle;
+  const SinCos<S> turn = sincos(angle);
+  rotation_ = {turn.cos, turn.sin};
+  center_ = origin + rotate(centerOfMass_, rotation_);
+}
+
+template <Scalar S>
+void Body<S>::setAngularVelocity(S angularVelocity) {
+  require<Fault::IllegalBody>(within(angularVelocity, kMaxAngularSpeed<S>), kBadAngularVelocity);
+  require<Fault::IllegalBody>(type_ != BodyType::staticBody || angularVelocity == S(0), kBadAngularVelocity);
+
+  angularVelocity_ = angularVelocity;
+}
+
+template <Scalar S>
+void Body<S>::setTorque(S torque) {
+  require<Fault::IllegalBody>(within(torque, kMaxForce<S>), kBadTorque);
+
+  torque_ = torque;
+}
+
+template <Scalar S>
+Vector<S> Body<S>::velocityAt(const Vector<S>& worldPoint) const {
+  return mulAdd(perp(worldPoint - center_), angularVelocity_, velocity_);
+}
+
+template <Scalar S>
+typename Body<S>::Motion Body<S>::pushed(const Vector<S>& impulse, const Vector<S>& worldPoint) const {
+  require<Fault::IllegalBody>(within(impulse, kMaxForce<S>) && within(worldPoint, kMaxWorldExtent<S>),
+                              "Body's impulse is invalid.");
+  if (!isDynamic()) return {};
+  const Vector<S> arm = worldPoint - center_;
+  const Scaled<S> turning = toScaled(arm.x) * toScaled(impulse.y) - toScaled(arm.y) * toScaled(impulse.x);
+  const S spin = toScalarWithin(turning * inverseMoment_, kMaxAngle<S>);
+  const Vector<S> change(answer(impulse.x, inverseMass_), answer(impulse.y, inverseMass_));
+  return {change, spin};
+}
+
+template <Scalar S>
+void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
+  const Motion change = pushed(impulse, worldPoint);
+  if (isDynamic()) holdVelocity({velocity_ + change.velocity, angularVelocity_ + change.angularVelocity});
+}
+
+template <Scalar S>
+void Body<S>::applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
+  const Motion change = pushed(impulse, worldPoint);
+  velocityBias_ = heldWithin(velocityBias_ + change.velocity, kMaxSpeed<S>);
+  angularVelocityBias_ =
+      clamp(angularVelocityBias_ + change.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
+}
+
+template <Scalar S>
+void Body<S>::applyForce(const Vector<S>& force, const Vector<S>& worldPoint) {
+  require<Fault::IllegalBody>(within(force, kMaxForce<S>), kBadForce);
+  require<Fault::IllegalBody>(within(worldPoint, kMaxWorldExtent<S>), kBadPosition);
+  // Far below 2^31 before they are added, so that Fixed cannot wrap.
+  const Scaled<S> fx = toScaled(force_.x) + toScaled(force.x);
+  const Scaled<S> fy = toScaled(force_.y) + toScaled(force.y);
+  const Vector<S> arm = worldPoint - center_;
+  const Scaled<S> turning = toScaled(arm.x) * toScaled(force.y) - toScaled(arm.y) * toScaled(force.x);
+  const Vector<S> sum(toScalar<S>(fx), toScalar<S>(fy));
+  const S torque = saturated<S>(toScaled(torque_) + turning);
+  require<Fault::IllegalBody>(within(sum, kMaxForce<S>), kBadForce);
+  require<Fault::IllegalBody>(within(torque, kMaxForce<S>), kBadTorque);
+
+  force_ = sum;
+  torque_ = torque;
+}
+
+template <Scalar S>
+const char* Body<S>::cannotStep() const {
+  if (!isDynamic()) return nullptr;
+  if (mass_ == S(0)) return "Body's mass is zero: set it, or give the body a shape with a mass.";
+  if (rotates() && !(moment_ > Scaled<S>{})) {
+    return "Body's moment is zero: set it, give the body a shape with a mass, or use Body::nonRotating.";
+  }
+  return nullptr;
+}
+
+template <Scalar S>
+typename Body<S>::Motion Body<S>::acceleration(const Vector<S>& gravity) const {
+  return {gravity + Vector<S>(answer(force_.x, inverseMass_), answer(force_.y, inverseMass_)),
+          rotates() ? answer(torque_, inverseMoment_) : S(0)};
+}
+
+template <Scalar S>
+typename Body<S>::Motion Body<S>::accelerated(const Vector<S>& gravity, S damping, S dt) const {
+  const Motion pull = acceleration(gravity);
+  return {{dot(velocity_.x, damping, pull.velocity.x, dt), dot(velocity_.y, damping, pull.velocity.y, dt)},
+          dot(angularVelocity_, damping, pull.angularVelocity, dt)};
+}
+
+template <Scalar S>
+std::uint8_t Body<S>::holdVelocity(const Motion& motion) {
+  highWater<S>("body: speed before it is held", max(abs(motion.velocity.x), abs(motion.velocity.y)));
+  highWater<S>("body: spin before it is held", motion.angularVelocity);
+  velocity_ = heldWithin(motion.velocity, kMaxSpeed<S>);
+  angularVelocity_ = clamp(motion.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
+  return static_cast<std::uint8_t>((velocity_ == motion.velocity ? kHeldNothing : kHeldSpeed) |
+                                   (angularVelocity_ == motion.angularVelocity ? kHeldNothing : kHeldSpin));
+}
+
+template <Scalar S>
+std::uint8_t Body<S>::holdPosition(S dt, S extent) {
+  const Vector<S> by = (velocity_ + velocityBias_) * dt;
+  const S angle = (angularVelocity_ + angularVelocityBias_) * dt;
+  // The bias only pushes overlapping shapes apart. Kept past this step, it would become momentum that no
+  // impulse ever put in.
+  velocityBias_ = {};
+  angularVelocityBias_ = S(0);
+  return holdMoved(by, angle, extent);
+}
+
+template <Scalar S>
+std::uint8_t Body<S>::holdMoved(const Vector<S>& by, S angle, S extent) {
+  const Vector<S> moved = center_ + by;
+  const S turned = angle_ + angle;
+  highWater<S>("body: position before it is held", max(abs(moved.x), abs(moved.y)));
+  highWater<S>("body: angle before it is held", turned);
+  std::uint8_t what = kHeldNothing;
+  center_ = heldWithin(moved, extent);
+  if (!(center_ == moved)) {
+    what |= kHeldAtBorder;
+    if (center_.x != moved.x) velocity_.x = S(0);
+    if (center_.y != moved.y) velocity_.y = S(0);
+  }
+  const S heldAngle = clamp(turned, -kMaxAngle<S>, kMaxAngle<S>);
+  if (heldAngle != turned) {
+    what |= kHeldSpin;
+    angularVelocity_ = S(0);
+  }
+  if (heldAngle != angle_) {
+    angle_ = heldAngle;
+    const SinCos<S> turn = sincos(angle_);
+    rotation_ = {turn.cos, turn.sin};
+  }
+  return what;
+}
+
+template <Scalar S>
+void Body<S>::updatePosition(S dt) {
+  require<Fault::IllegalBody>(within(dt, kMaxTimeStep<S>), kBadTimeStep);
+  const Vector<S> moved = mulAdd(velocity_ + velocityBias_, dt, center_);
+  const S turned = mulAdd(angularVelocity_ + angularVelocityBias_, dt, angle_);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(moved, kMaxWorldExtent<S>), kBadPosition);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(turned, kMaxAngle<S>), kBadAngle);
+
+  held_ |= holdPosition(dt, kMaxWorldExtent<S>);
+}
+
+template <Scalar S>
+void Body<S>::updateVelocity(const Vector<S>& gravity, S damping, S dt) {
+  if (!isDynamic()) return;
+  const char* reason = cannotStep();
+  if (reason != nullptr) fail<Fault::IllegalBody>(reason);
+  require<Fault::IllegalBody>(within(dt, kMaxTimeStep<S>), kBadTimeStep);
+  require<Fault::IllegalBody>(within(gravity, kMaxAcceleration<S>) && damping >= S(0) && damping <= S(1),
+                              kBadVelocity);
+  const Motion motion = accelerated(gravity, damping, dt);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(motion.velocity, kMaxSpeed<S>), kBadVelocity);
+  require<Fault::IllegalBody>(stepping_ != 0 || within(motion.angularVelocity, kMaxAngularSpeed<S>),
+                              kBadAngularVelocity);
+
+  held_ |= holdVelocity(motion);
+  force_ = {};
+  torque_ = S(0);
+}
+
+template <Scalar S>
+S Body<S>::kineticEnergy() const {
+  if (!isDynamic()) return S(0);
+  const auto square = [](S x) { return toScaled(x) * toScaled(x); };
+  const Scaled<S> twice =
+      toScaled(mass_) * (square(velocity_.x) + square(velocity_.y)) + moment_ * square(angularVelocity_);
+  return saturated<S>(twice * toScaled(ratio<S>(1, 2)));
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class Body<double>;
+#endif
+template class Body<Fixed>;
+template class Body<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/segment_shape.h>
+
+#include <samestep/poly_shape.h>
+
+#include "geometry/shape_geometry.h"
+
+namespace samestep {
+
+template <Scalar S>
+Scaled<S> scaledMomentForSegment(Scaled<S> mass, const Vector<S>& a, const Vector<S>& b, S radius) {
+  // The centre is (a + b) / 2; the square is quartered instead, which loses no bit.
+  const Scaled<S> offset = scaledLengthSq(a + b) * scaledRatio<S>(1, 4);
+  const S width = radius + radius;
+  return scaledMomentForBox<S>(mass, distance(a, b) + width, width) + mass * offset;
+}
+
+template <Scalar S>
+S momentForSegment(S mass, const Vector<S>& a, const Vector<S>& b, S radius) {
+  return toScalar<S>(scaledMomentForSegment<S>(toScaled(mass), a, b, radius));
+}
+
+template <Scalar S>
+Scaled<S> scaledAreaForSegment(const Vector<S>& a, const Vector<S>& b, S radius) {
+  const Scaled<S> r = toScaled(radius), straight = toScaled(distance(a, b));
+  return r * (toScaled(kPi<S>) * r + straight + straight);
+}
+
+template <Scalar S>
+S areaForSegment(const Vector<S>& a, const Vector<S>& b, S radius) {
+  return toScalar<S>(scaledAreaForSegment(a, b, radius));
+}
+
+template <Scalar S>
+ShapeMassInfo<S> segmentMassInfo(S mass, const Vector<S>& a, const Vector<S>& b, S radius) {
+  const S width = radius + radius;
+  return {mass, lerp(a, b, ratio<S>(1, 2)),
+          scaledMomentForBox<S>(toScaled(S(1)), distance(a, b) + width, width),
+          scaledAreaForSegment(a, b, radius)};
+}
+
+template <Scalar S>
+Shape<S> segmentShape(BodyId body, const Vector<S>& a, const Vector<S>& b, S radius) {
+  Shape<S> shape;
+  shape.setBody(body);
+  SegmentShape<S>::assign(shape, a, b, radius);
+  return shape;
+}
+
+template <Scalar S>
+void SegmentShape<S>::setGeometry(Shape<S>& shape, const Vector<S>& a, const Vector<S>& b, S radius,
+                                  const Vector<S>& tangentA, const Vector<S>& tangentB) {
+  const Vector<S> points[] = {a, b, tangentA, tangentB};
+  requireSupported<S>(std::span(points).first(2), radius);
+  require<Fault::DegenerateShape>(a != b);
+  shape.setGeometry(ShapeType::segment, points, radius, segmentMassInfo(shape.mass(), a, b, radius));
+}
+
+template <Scalar S>
+void SegmentShape<S>::assign(Shape<S>& shape, const Vector<S>& a, const Vector<S>& b, S radius) {
+  setGeometry(shape, a, b, radius, Vector<S>(), Vector<S>());
+}
+
+template <Scalar S>
+void SegmentShape<S>::setNeighbors(const Vector<S>& previous, const Vector<S>& next) {
+  const Vector<S> points[] = {previous, next};
+  requireSupported<S>(points, S(0));
+  setGeometry(shape_, this->a(), this->b(), this->radius(), previous - this->a(), next - this->b());
+}
+
+template <Scalar S>
+void SegmentShape<S>::setEndpoints(const Vector<S>& a, const Vector<S>& b) {
+  setGeometry(shape_, a, b, this->radius(), this->tangentA(), this->tangentB());
+}
+
+template <Scalar S>
+void SegmentShape<S>::setRadius(S radius) {
+  setGeometry(shape_, this->a(), this->b(), radius, this->tangentA(), this->tangentB());
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class SegmentShape<double>;
+template Shape<double> segmentShape<double>(BodyId, const Vector<double>&, const Vector<double>&, double);
+template Scaled<double> scaledMomentForSegment<double>(Scaled<double>, const Vector<double>&,
+                                                       const Vector<double>&, double);
+template double momentForSegment<double>(double, const Vector<double>&, const Vector<double>&, double);
+template Scaled<double> scaledAreaForSegment<double>(const Vector<double>&, const Vector<double>&, double);
+template double areaForSegment<double>(const Vector<double>&, const Vector<double>&, double);
+template ShapeMassInfo<double> segmentMassInfo<double>(double, const Vector<double>&, const Vector<double>&,
+                                                       double);
+#endif
+template class SegmentShape<Fixed>;
+template Shape<Fixed> segmentShape<Fixed>(BodyId, const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
+template Scaled<Fixed> scaledMomentForSegment<Fixed>(Scaled<Fixed>, const Vector<Fixed>&,
+                                                     const Vector<Fixed>&, Fixed);
+template Fixed momentForSegment<Fixed>(Fixed, const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
+template Scaled<Fixed> scaledAreaForSegment<Fixed>(const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
+template Fixed areaForSegment<Fixed>(const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
+template ShapeMassInfo<Fixed> segmentMassInfo<Fixed>(Fixed, const Vector<Fixed>&, const Vector<Fixed>&,
+                                                     Fixed);
+template class SegmentShape<CheckedFixed>;
+template Shape<CheckedFixed> segmentShape<CheckedFixed>(BodyId, const Vector<CheckedFixed>&,
+                                                        const Vector<CheckedFixed>&, CheckedFixed);
+template Scaled<CheckedFixed> scaledMomentForSegment<CheckedFixed>(Scaled<CheckedFixed>,
+                                                                   const Vector<CheckedFixed>&,
+                                                                   const Vector<CheckedFixed>&, CheckedFixed);
+template CheckedFixed momentForSegment<CheckedFixed>(CheckedFixed, const Vector<CheckedFixed>&,
+                                                     const Vector<CheckedFixed>&, CheckedFixed);
+template Scaled<CheckedFixed> scaledAreaForSegment<CheckedFixed>(const Vector<CheckedFixed>&,
+                                                                 const Vector<CheckedFixed>&, CheckedFixed);
+template CheckedFixed areaForSegment<CheckedFixed>(const Vector<CheckedFixed>&, const Vector<CheckedFixed>&,
+                                                   CheckedFixed);
+template ShapeMassInfo<CheckedFixed> segmentMassInfo<CheckedFixed>(CheckedFixed, const Vector<CheckedFixed>&,
+                                                                   const Vector<CheckedFixed>&, CheckedFixed);
+
+}  // namespace samestep

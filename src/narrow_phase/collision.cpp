@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/collision.h>
+
+#include "geometry/shape_edges.h"
+#include "narrow_phase/clip.h"
+#include "narrow_phase/collision_functions.h"
+#include "narrow_phase/gjk.h"
+#include "narrow_phase/support.h"
+#include "narrow_phase/support_faces.h"
+
+namespace samestep {
+namespace {
+
+template <Scalar S>
+void circleToCircle(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, CollisionInfo<S>& info) {
+  const Vector<S> delta = b.center() - a.center();
+  const S reach = a.radius + b.radius + margin;
+  if (exactDot(delta, delta) >= exactProduct(reach, reach)) return;
+  info.normal = delta == Vector<S>() ? Vector<S>(S(1), S(0)) : normalize(delta);
+  info.push(a.center() + info.normal * a.radius, b.center() - info.normal * b.radius, 0);
+}
+
+/// The tangents of a segment towards its neighbours, in the world; zero without one.
+template <Scalar S>
+Vector<S> tangent(const PlacedShape<S>& segment, int end) {
+  return end == 0 ? segment.planes[2].v0 : segment.planes[2].n;
+}
+
+/// Whether the end of a segment may touch what lies in the direction `away`: not on its neighbour's side.
+/// @param vertex  the end, or -1: no end touches
+template <Scalar S>
+bool endMayTouch(const PlacedShape<S>& shape, int vertex, const Vector<S>& away) {
+  if (shape.type != ShapeType::segment || vertex < 0) return true;
+  return sign(exactDot(away, tangent(shape, vertex))) <= 0;
+}
+
+template <Scalar S>
+void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, const NearestEdge<S>& nearest,
+                    S reach, CollisionInfo<S>& info) {
+  const Vector<S> corner = other.planes[nearest.vertex].v0;
+  const Vector<S> delta = corner - circle.center();
+  const Wide<S> apart = exactDot(delta, delta), limit = exactProduct(reach, reach);
+  // As in Chipmunk, a segment that is only just met is not touched, a polygon is.
+  if (apart > limit || (apart == limit && other.type == ShapeType::segment)) return;
+  const Vector<S> fallback =
+      other.type == ShapeType::segment ? other.planes[1].n : -other.planes[nearest.edge].n;
+  const Vector<S> n = delta == Vector<S>() ? fallback : normalize(delta);
+  if (!endMayTouch(other, nearest.vertex, -n)) return;
+  info.normal = n;
+  info.push(circle.center() + n * circle.radius, corner - n * other.radius, 0);
+}
+
+/// A circle and a segment or polygon. One look at the edges finds what GJK and EPA would.
+template <Scalar S>
+void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, S margin,
+                   CollisionInfo<S>& info) {
+  const Vector<S> c = circle.center();
+  const NearestEdge<S> nearest = nearestEdge(other, c);
+  const S reach = circle.radius + other.radius + margin;
+  if (nearest.distance > reach) return;
+  if (nearest.vertex >= 0) return circleToCorner(circle, other, nearest, reach, info);
+  if (nearest.distance == reach && other.type == ShapeType::segment) return;
+  const Vector<S> n = -other.planes[nearest.edge].n;
+  info.normal = n;
+  info.push(c + n * circle.radius, c + n * (nearest.distance - other.radius), 0);
+}
+
+/// Whether the ends of segments allow shapes with edges to touch there.
+template <Scalar S>
+bool endsMayTouch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest) {
+  return endMayTouch(a, closest.vertexA, closest.normal) && endMayTouch(b, closest.vertexB, -closest.normal);
+}
+
+/// Two shapes of which a face is nearest to a vertex.
+/// @return false where rounding has left no point, or of faces all but in one line has preferred one that
+/// ends elsewhere
+template <Scalar S>
+bool touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis, S margin,
+               CollisionInfo<S>& info) {
+  const PlacedShape<S>&reference = axis.onB ? b : a, &other = axis.onB ? a : b;
+  const Vector<S> outward = reference.planes[axis.face].n;
+  if (!endMayTouch(other, axis.vertex, -outward)) return true;
+  const SupportEdge<S> face = edgeTo(reference, axis.face), edge = edgeAt(other, axis.vertex, -outward);
+  const bool opposite = axis.onB ? clip(edge, a.radius, face, b.radius, -outward, margin, info)
+                                 : clip(face, a.radius, edge, b.radius, outward, margin, info);
+  if (opposite && info.count > 0) return true;
+  info.count = 0;
+  return false;
+}
+
+template <Scalar S>
+ClosestPoints<S> closestPoints(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
+                               CollisionStats* stats) {
+  // Across the line between the middles of the boxes, twice as long.
+  const Vector<S> axis = perp(Vector<S>((a.box.left - b.box.left) + (a.box.right - b.box.right),
+                                        (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
+  return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);
+}
+
+/// The edge of a shape that the search named, or the vertex as one without length, counter-clockwise.
+/// @param shift  of the shape's number in the second half of the id: 8 for A, 0 for B
+template <Scalar S>
+SupportEdge<S> namedEdge(const PlacedShape<S>& shape, const ClosestPoints<S>& closest, int shift) {
+  // The search goes round clockwise.
+  const int from = static_cast<int>(closest.id >> shift & 0xff),
+            to = static_cast<int>(closest.id >> (shift + 16) & 0xff);
+  return {shape.planes[from].v0, shape.planes[to].v0, from, to};
+}
+
+/// Whether the places of each point lie opposite each other.
+template <Scalar S>
+bool areOpposite(const CollisionInfo<S>& info) {
+  bool all = true;
+  for (int i = 0; i < info.count; ++i) {
+    all = all && abs(cross(info.points[i].pointB - info.points[i].pointA, info.normal)) <= kFlat<S>;
+  }
+  return all;
+}
+
+/// One point, at the places where the search found the shapes nearest, or the overlap least. Each is a vertex
+/// or lies between two of one shape, so that it is on the shape, whatever is rounded.
+template <Scalar S>
+void touchWhereNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest,
+                       CollisionInfo<S>& info) {
+  const SupportEdge<S> onA = namedEdge(a, closest, 8), onB = namedEdge(b, closest, 0);
+  // Ends of an edge of the Minkowski difference, along which the place nearest to the origin is looked for.
+  const Vector<S> n = closest.normal, from = onB.a - onA.a, to = onB.b - onA.b;
+  const S part = cross(from, n), whole = cross(from - to, n);
+  const auto place = [&](const PlacedShape<S>& shape, int vertex, const SupportEdge<S>& on) {
+    return vertex >= 0 ? shape.planes[vertex].v0 : pointAlong(on, part, whole);
+  };
+  const auto name = [](int vertex, const SupportEdge<S>& on) {
+    return static_cast<std::uint32_t>(vertex >= 0 ? vertex : on.indexA);
+  };
+  info.push(place(a, closest.vertexA, onA) + n * a.radius, place(b, closest.vertexB, onB) - n * b.radius,
+            name(closest.vertexA, onA) << 16 | name(closest.vertexB, onB));
+}
+
+/// Two shapes with edges, by the search for their nearest features.
+template <Scalar S>
+void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start, S margin,
+                  CollisionInfo<S>& info, CollisionStats* stats) {
+  const ClosestPoints<S> closest = closestPoints(a, b, start, stats);
+  info.id = closest.id;
+  if (closest.distance > a.radius + b.radius + margin || !endsMayTouch(a, b, closest)) return;
+  const Vector<S> n = closest.normal;
+  const SupportEdge<S> onA = closest.vertexA >= 0 ? edgeAt(a, closest.vertexA, n) : namedEdge(a, closest, 8);
+  const SupportEdge<S> onB = closest.vertexB >= 0 ? edgeAt(b, closest.vertexB, -n) : namedEdge(b, closest, 0);
+  const bool facing = clip(onA, a.radius, onB, b.radius, n, margin, info);
+  // Of two corners the edges need not lie opposite each other, only their ends.
+  const bool corners = closest.vertexA >= 0 && closest.vertexB >= 0;
+  if (info.count > 0 && (facing || (corners && areOpposite(info)))) [[likely]]
+    return;
+  // A tip that points at the other shape may lie between the places that were looked at.
+  info.count = 0;
+  touchWhereNearest(a, b, closest, info);
+}
+
+/// Segments and polygons, but for two segments, which have no face towards each other's ends.
+template <Scalar S>
+void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, CollisionInfo<S>& info,
+                 CollisionStats* stats) {
+  const CollisionId start = info.id;
+  if (a.count * b.count <= kMaxFacePairs) {
+    const S reach = a.radius + b.radius + margin;
+    const FaceAxis<S> axis = bestFace(a, b, reach, start);
+    info.id = axis.id();
+    if (axis.separation > reach) return;
+    const bool byFace = axis.separation <= S(0) || facesVertex(a, b, axis);
+    if (byFace && touchFace(a, b, axis, margin, info)) return;
+    // Corners near each other; thin ones may be far apart where all faces are within rounding of touching.
+  }
+  touchNearest(a, b, start, margin, info, stats);
+}
+
+/// The same contact with the shapes exchanged.
+template <Scalar S>
+void exchange(CollisionInfo<S>& info) {
+  info.normal = -info.normal;
+  for (int i = 0; i < info.count; ++i) {
+    const CollisionPoint<S> p = info.points[i];
+    info.points[i] = {p.pointB, p.pointA, p.hash << 16 | p.hash >> 16};
+  }
+}
+
+}  // namespace
+
+template <Scalar S>
+void collideSorted(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionInfo<S>& info,
+                   CollisionStats* stats, S margin) {
+  require<Fault::CollisionError>(a.type <= b.type);
+  if (b.type == ShapeType::segment && a.type == ShapeType::segment) {
+    touchNearest(a, b, info.id, margin, info, stats);
+  } else if (a.type != ShapeType::circle) {
+    edgesToPoly(a, b, margin, info, stats);
+  } else if (b.type == ShapeType::circle) {
+    circleToCircle(a, b, margin, info);
+  } else {
+    circleToEdges(a, b, margin, info);
+  }
+}
+
+template <Scalar S>
+CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
+                         CollisionStats* stats, S margin) {
+  CollisionInfo<S> info;
+  info.id = start;
+  if (a.type <= b.type) {
+    collideSorted(a, b, info, stats, margin);
+  } else {
+    collideSorted(b, a, info, stats, margin);
+    exchange(info);
+  }
+  return info;
+}
+
+template <Scalar S>
+ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, const Shape<S>& b,
+                                 const Transform<S>& poseB) {
+  const Placement<S> placedA(a, poseA), placedB(b, poseB);
+  const CollisionInfo<S> info = collide(*placedA, *placedB);
+  ContactPointSet<S> set;
+  set.count = info.count;
+  if (info.count == 0) return set;
+  set.normal = info.normal;
+  for (int i = 0; i < info.count; ++i) {
+    const CollisionPoint<S>& p = info.points[i];
+    set.points[i] = {p.pointA, p.pointB, dot(p.pointB - p.pointA, info.normal)};
+  }
+  return set;
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template CollisionInfo<double> collide<double>(const PlacedShape<double>&, const PlacedShape<double>&,
+                                               CollisionId, CollisionStats*, double);
+template ContactPointSet<double> shapesCollide<double>(const Shape<double>&, const Transform<double>&,
+                                                       const Shape<double>&, const Transform<double>&);
+template void collideSorted<double>(const PlacedShape<double>&, const PlacedShape<double>&,
+                                    CollisionInfo<double>&, CollisionStats*, double);
+#endif
+template CollisionInfo<Fixed> collide<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
+                                             CollisionId, CollisionStats*, Fixed);
+template ContactPointSet<Fixed> shapesCollide<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&,
+                                                     const Shape<Fixed>&, const Transform<Fixed>&);
+template void collideSorted<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
+                                   CollisionInfo<Fixed>&, CollisionStats*, Fixed);
+template CollisionInfo<CheckedFixed> collide<CheckedFixed>(const PlacedShape<CheckedFixed>&,
+                                                           const PlacedShape<CheckedFixed>&, CollisionId,
+                                                           CollisionStats*, CheckedFixed);
+template ContactPointSet<CheckedFixed> shapesCollide<CheckedFixed>(const Shape<CheckedFixed>&,
+                                                                   const Transform<CheckedFixed>&,
+                                                                   const Shape<CheckedFixed>&,
+                                                                   const Transform<CheckedFixed>&);
+template void collideSorted<CheckedFixed>(const PlacedShape<CheckedFixed>&, const PlacedShape<CheckedFixed>&,
+                                          CollisionInfo<CheckedFixed>&, CollisionStats*, CheckedFixed);
+
+}  // namespace samestep

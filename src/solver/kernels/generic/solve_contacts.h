@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "solver/kernels/contact_block.h"
+
+/// The pass over contact blocks, written once for every kernel. `L` says what a group of lanes is: its
+/// vectors of kWidth numbers, V of speeds and C of coefficients, and the operations on them. All of it has
+/// internal linkage, since each kernel is built with flags of its own.
+namespace samestep {
+namespace {
+
+/// Three numbers of a body, of each lane: what is made from V, speeds and ways, where C are coefficients.
+template <class L>
+struct LaneMotion {
+  typename L::V x, y, turn;
+};
+
+/// Which pass over the contacts it is: with springs before any body moves, with springs, or without them.
+enum class Pass { start, solve, relax };
+
+/// One pair of each lane. With springs friction comes first, against the normal impulses so far, and the
+/// normals have the last word; without them friction comes last, against what the normals then are, since it
+/// would otherwise be held by impulses that relaxing is about to lower.
+template <class L, Pass kPass, class N = typename L::Numbers>
+[[gnu::always_inline]] inline void solveLanes(ContactBlock<N>& block, BlockRest<N>& rest, int lane,
+                                              SoftBody<N>* bodies, const SoftConstants<N>& constants,
+                                              L& lanes) {
+  using V = typename L::V;
+  using C = typename L::C;
+  LaneMotion<L> velocityA, velocityB, movedA, movedB;
+  V bendA, bendB;
+  L::gatherVelocity(bodies, block.bodyA + lane, velocityA.x, velocityA.y, velocityA.turn);
+  L::gatherVelocity(bodies, block.bodyB + lane, velocityB.x, velocityB.y, velocityB.turn);
+
+  const C nx = L::coefficient(block.normalX + lane);
+  const C ny = L::coefficient(block.normalY + lane);
+  const C friction = L::coefficient(block.friction + lane);
+  const V dx = velocityB.x - velocityA.x;
+  const V dy = velocityB.y - velocityA.y;
+  V normalSpeed = L::dot2(nx, dx, ny, dy);
+  V tangentSpeed = L::cross2(nx, dy, ny, dx) + L::load(block.surface + lane);
+  V normalPart = L::zero();
+  V tangentPart = L::zero();
+  const int points = L::pointsOf(block, lane);
+
+  V apart;
+  if constexpr (kPass == Pass::relax) {
+    L::gatherMoved(bodies, block.bodyA + lane, movedA.x, movedA.y, movedA.turn, bendA);
+    L::gatherMoved(bodies, block.bodyB + lane, movedB.x, movedB.y, movedB.turn, bendB);
+    bendA = L::unless(block.roundA, lane, bendA);
+    bendB = L::unless(block.roundB, lane, bendB);
+    apart = L::dot2(nx, movedB.x - movedA.x, ny, movedB.y - movedA.y);
+  }
+  const auto rub = [&]() __attribute__((always_inline)) {
+    for (int i = 0; i < points; ++i) {
+      auto& axis = block.point[i].tangent;
+      const C armA = L::coefficient(axis.armA + lane);
+      const C armB = L::coefficient(axis.armB + lane);
+      const V before = L::load(axis.sum + lane);
+      const V limit = L::frictionLimit(block, friction, L::load(block.point[i].normal.sum + lane));
+      const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
+      const V sum = lanes.checked(
+          L::within(before - L::product(L::coefficient(axis.mass + lane), speed), -limit, limit));
+      L::store(axis.sum + lane, sum);
+      const V change = lanes.checkedChange(sum - before);
+      tangentSpeed = tangentSpeed + change;
+      tangentPart = tangentPart + change;
+      velocityA.turn = lanes.checkedTurn(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
+      velocityB.turn = lanes.checkedTurn(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
+      L::note("soft step: friction limit", limit);
+      L::note("soft step: relative speed", speed);
+      if constexpr (kPass == Pass::relax) {
+        L::store(rest.tangentTotal[i] + lane, lanes.checkedTotal(L::load(rest.tangentTotal[i] + lane) + sum));
+      }
+    }
+  };
+  const auto push = [&]() __attribute__((always_inline)) {
+    for (int i = 0; i < points; ++i) {
+      auto& axis = block.point[i].normal;
+      const C armA = L::coefficient(axis.armA + lane);
+      const C armB = L::coefficient(axis.armB + lane);
+      const V before = L::load(axis.sum + lane);
+      const C mass = L::coefficient(axis.mass + lane);
+      const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
+      V target, correction;
+      if constexpr (kPass == Pass::solve) {
+        target = L::load(block.point[i].target + lane);
+      } else {
+        V separation = L::load(block.point[i].separation + lane);
+        if constexpr (kPass == Pass::relax) {
+          // The arms of the tangent are r . n: how far a bend comes nearer.
+          separation = separation + apart +
+                       L::crosses(armB, movedB.turn, armA, movedA.turn,  //
+                                  L::coefficient(block.point[i].tangent.armA + lane), bendA,
+                                  L::coefficient(block.point[i].tangent.armB + lane), bendB);
+        }
+        separation = L::near(separation, constants);
+        // Not touching yet: may come as near as it is within this substep.
+        const V gap = L::rate(separation, constants.perSubstep);
+        const V apartSpeed =
+            L::greater(L::rate(separation, L::softness(block.stiff, lane, constants.softness).biasRate),
+                       L::all(-constants.pushSpeed));
+        target = L::select(L::above(separation, L::zero()), gap, apartSpeed);
+        L::store(block.point[i].target + lane, target);
+        L::note("soft step: target speed", gap);
+      }
+      if constexpr (kPass == Pass::relax) {
+        correction = L::product(mass, lanes.checked(speed + L::greater(target, L::zero())));
+      } else {
+        const auto soft = L::softness(block.stiff, lane, constants.softness);
+        const V full = L::product(mass, lanes.checked(speed + target));
+        correction = L::select(L::above(target, L::zero()), full, L::soften(soft, full, before));
+      }
+      const V sum = lanes.checked(L::pushing(before - correction, constants));
+      L::store(axis.sum + lane, sum);
+      const V change = lanes.checkedChange(sum - before);
+      normalSpeed = normalSpeed + change;
+      normalPart = normalPart + change;
+      velocityA.turn = lanes.checkedTurn(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
+      velocityB.turn = lanes.checkedTurn(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
+      L::note("soft step: relative speed", speed);
+      if constexpr (kPass == Pass::relax) {
+        L::store(rest.normalTotal[i] + lane, lanes.checkedTotal(L::load(rest.normalTotal[i] + lane) + sum));
+      }
+    }
+  };
+  if constexpr (kPass == Pass::relax) {
+    push();
+    rub();
+  } else {
+    rub();
+    push();
+  }
+
+  const C ax = L::coefficient(block.pushAX + lane);
+  const C ay = L::coefficient(block.pushAY + lane);
+  const C bx = nx - ax;
+  const C by = ny - ay;
+  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane,
+                        velocityA.x - L::cross2(ax, normalPart, ay, tangentPart),
+                        velocityA.y - L::dot2(ay, normalPart, ax, tangentPart), velocityA.turn);
+  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane,
+                        velocityB.x + L::cross2(bx, normalPart, by, tangentPart),
+                        velocityB.y + L::dot2(by, normalPart, bx, tangentPart), velocityB.turn);
+}
+
+template <class L, Pass kPass, class N = typename L::Numbers>
+std::uint64_t passOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32_t count, SoftBody<N>* bodies,
+                       const SoftConstants<N>& constants) {
+  L lanes;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (int lane = 0; lane < N::kLanes; lane += L::kWidth) {
+      if (L::kWidth < N::kLanes && blocks[i].count[lane] == 0) break;
+      solveLanes<L, kPass>(blocks[i], rests[i], lane, bodies, constants, lanes);
+    }
+  }
+  return lanes.left();
+}
+
+}  // namespace
+}  // namespace samestep

@@ -1,0 +1,497 @@
+// SPDX-License-Identifier: MIT
+#include "solver/soft_step/block_solver.h"
+
+#include <samestep/high_water.h>
+
+#include <bit>
+
+#include "base/require_ieee.h"
+#include "contacts/contact_row.h"
+#include "solver/kernels/generic/integer_lanes.h"
+#include "solver/kernels/generic/scalar_lanes.h"
+#include "solver/kernels/generic/soft_passes.h"
+#include "solver/kernels/kernels.h"
+
+namespace samestep {
+namespace {
+
+template <class S, class N>
+SoftPasses<N> passesFor(KernelTarget target) {
+  if constexpr (std::same_as<N, WideNumbers>) {
+    // A scalar that checks has one kernel, which tells.
+    if constexpr (!S::kChecks) {
+      if (target == KernelTarget::avx512 && kernels::wideAvx512 != nullptr) return *kernels::wideAvx512;
+      if (target == KernelTarget::avx2 && kernels::wideAvx2 != nullptr) return *kernels::wideAvx2;
+      if (target == KernelTarget::neon && kernels::wideNeon != nullptr) return *kernels::wideNeon;
+      if (target == KernelTarget::simd128 && kernels::wideSimd128 != nullptr) return *kernels::wideSimd128;
+      if (target == KernelTarget::sse42 && kernels::wideSse42 != nullptr) return *kernels::wideSse42;
+    }
+    return kPassesOf<WideScalarLanes<S>, CoefficientLanes<OneAtATime, WideNumbers>>;
+  } else if constexpr (std::same_as<N, FastNumbers>) {
+    if (target == KernelTarget::avx512 && kernels::fastAvx512 != nullptr) return *kernels::fastAvx512;
+    if (target == KernelTarget::avx2 && kernels::fastAvx2 != nullptr) return *kernels::fastAvx2;
+    if (target == KernelTarget::neon && kernels::fastNeon != nullptr) return *kernels::fastNeon;
+    if (target == KernelTarget::simd128 && kernels::fastSimd128 != nullptr) return *kernels::fastSimd128;
+    if (target == KernelTarget::sse42 && kernels::fastSse42 != nullptr) return *kernels::fastSse42;
+    return kernels::fastBy1;
+  } else if constexpr (FixedNumber<S>) {
+    return kPassesOf<ScalarLanes<S>>;
+  } else {
+    if (target == KernelTarget::avx512 && kernels::doubleAvx512 != nullptr) return *kernels::doubleAvx512;
+    if (target == KernelTarget::avx2 && kernels::doubleAvx2 != nullptr) return *kernels::doubleAvx2;
+    return kernels::doubleBy2;
+  }
+}
+
+/// Whether there is a point, see BlockInput.
+template <class N>
+inline constexpr typename N::Coefficient kPresent{1};
+template <std::derived_from<IntegerUnits> N>
+inline constexpr std::int32_t kPresent<N> = -1;
+
+/// A point that changes nothing.
+template <class N>
+void clearPoint(ContactBlock<N>& block, BlockRest<N>& rest, BlockInput<N>& in, int lane, int point) {
+  constexpr typename N::Coefficient kNone(0);
+  auto& from = in.point[point];
+  from.armAX[lane] = from.armAY[lane] = from.armBX[lane] = from.armBY[lane] = from.present[lane] = kNone;
+  block.point[point].separation[lane] = typename N::Speed(0);
+  block.point[point].normal.sum[lane] = block.point[point].tangent.sum[lane] = typename N::Sum(0);
+  rest.normalTotal[point][lane] = rest.tangentTotal[point][lane] = rest.bounce[point][lane] =
+      typename N::Sum(0);
+}
+
+/// The share of a moment.
+[[gnu::always_inline]] inline std::int32_t momentPart(std::int32_t share, std::int32_t moment) {
+  return static_cast<std::int32_t>(units::rounded<IntegerUnits::kUnitBits>(std::int64_t{share} * moment));
+}
+
+/// How often springs are solved once more where something strikes.
+constexpr int kMorePasses = 2;
+
+/// The largest radius, in powers of two metres, at which a point along the normal is known to 2^-27 m by the
+/// unit of arms.
+constexpr int kNearBits = 3;
+
+/// One of the velocities of a body, as held between two contacts.
+template <class S, class N>
+typename N::Speed heldSpeed(typename N::Speed speed, int which) {
+  if constexpr (std::same_as<N, WideNumbers>) {
+    return clamp(speed, -N::kMostSpeed, N::kMostSpeed);
+  } else if constexpr (std::same_as<N, PlainNumbers<S, true>>) {
+    const S most = which == 2 ? ScalarLanes<S>::kMostSpin : ScalarLanes<S>::kMostSpeed;
+    return clamp(speed, -most, most);
+  } else {
+    return speed;
+  }
+}
+
+}  // namespace
+
+template <Scalar S, class N>
+BlockSolver<S, N>::BlockSolver() : passes_(passesFor<S, N>(nextBestKernel(KernelTarget::best))) {}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::setKernel(KernelTarget target) {
+  passes_ = passesFor<S, N>(target);
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
+                              const std::vector<BlockGroup>& groups, S mostKept) {
+  settings_ = &settings;
+  starts_ = &starts;
+  groups_ = &groups;
+  if (!units_.choose(settings, starts, mostKept)) return false;
+  constants_ = units_.constants(settings, kMaxSum<S>);
+  bodies_.assign(starts.size(), {});
+  drives_.resize(starts.size());
+  marks_.resize(starts.size());
+  if constexpr (kIntegers) moments_.resize(starts.size());
+  std::int64_t misfit = 0;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const SoftStart<S>& from = starts[i];
+    if constexpr (kIntegers) {
+      const int perRadius = 32 - N::kSpinBits - 2 * units_.radius(from.radiusBits);
+      const std::int64_t moment = units::shifted(from.momentPerMass.raw(), perRadius);
+      moments_[i] = static_cast<std::int32_t>(moment);
+      misfit |= moment ^ moments_[i];
+    }
+    SoftBody<N>& body = bodies_[i];
+    SoftDrive<N>& drive = drives_[i];
+    for (int k = 0; k < 2; ++k) {
+      body.velocity[k] = units_.speed(from.velocity[k], misfit);
+      drive.push[k] = units_.speed(from.push[k], misfit);
+    }
+    body.velocity[2] = units_.turn(from.velocity[2], from.radiusBits, misfit);
+    drive.push[2] = units_.turn(from.push[2], from.radiusBits, misfit);
+    for (int k = 0; k < 3; ++k) drive.base[k] = body.velocity[k];
+    drive.push[3] = drive.base[3] = Speed(0);
+    drive.limit[0] = drive.limit[1] = units_.mostSpeed(kMaxSpeed<S>, 0);
+    drive.limit[2] = units_.mostSpeed(kMaxAngularSpeed<S>, from.radiusBits);
+    drive.limit[3] = units_.factor(from.kept);
+    marks_[i] = {0, units_.bendBits(from.radiusBits)};
+  }
+  blockCount_ = groups.empty() ? 0 : groups.back().end;
+  if (blocks_.size() < blockCount_) {
+    blocks_.resize(blockCount_);
+    rests_.resize(blockCount_);
+  }
+  return misfit == 0;
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::openBlock(std::uint32_t at, int pairs, Taken& taken) {
+  Block& block = blocks_[at];
+  block.points = block.bounces = block.strikes = block.frictionShift = 0;
+  block.roundA = block.roundB = block.stiff = 0;
+  block.fixedA = block.fixedB = 0;
+  for (int lane = pairs; lane < N::kLanes; ++lane) clearLane(at, lane, taken);
+}
+
+/// Makes a lane that changes nothing.
+template <Scalar S, class N>
+void BlockSolver<S, N>::clearLane(std::uint32_t at, int lane, Taken& taken) {
+  using Coefficient = typename N::Coefficient;
+  constexpr Coefficient kNone(0);
+  Block& block = blocks_[at];
+  Rest& rest = rests_[at];
+  BlockInput<N>& in = taken.input;
+  const auto bit = static_cast<std::uint16_t>(1 << lane);
+  block.fixedA = static_cast<std::uint16_t>(block.fixedA | bit);
+  block.fixedB = static_cast<std::uint16_t>(block.fixedB | bit);
+  block.bodyA[lane] = block.bodyB[lane] = 0;
+  block.count[lane] = 0;
+  block.shareA[lane] = block.friction[lane] = kNone;
+  block.surface[lane] = Speed(0);
+  rest.pair[lane] = Rest::kNoPair;
+  in.cosA[lane] = in.sinA[lane] = in.cosB[lane] = in.sinB[lane] = kNone;
+  in.normalX[lane] = in.normalY[lane] = in.momentA[lane] = in.momentB[lane] = kNone;
+  for (int i = 0; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, in, lane, i);
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex,
+                                const SoftFrame<S>& a, const SoftFrame<S>& b, bool roundA, bool roundB,
+                                Taken& taken) {
+  Block& block = blocks_[at];
+  Rest& rest = rests_[at];
+  BlockInput<N>& in = taken.input;
+  taken.pair[lane] = &pair;
+  taken.a[lane] = &a;
+  taken.b[lane] = &b;
+  const auto bit = static_cast<std::uint16_t>(1 << lane);
+  const auto mark = [&](std::uint16_t& bits, bool set) {
+    if (set) bits = static_cast<std::uint16_t>(bits | bit);
+  };
+  block.bodyA[lane] = a.start;
+  block.bodyB[lane] = b.start;
+  block.count[lane] = pair.count;
+  block.points = max(block.points, pair.count);
+  mark(block.fixedA, a.isFixed());
+  mark(block.fixedB, b.isFixed());
+  mark(block.roundA, roundA);
+  mark(block.roundB, roundB);
+  mark(block.stiff, a.isFixed() || b.isFixed());
+  setFriction(block, lane, pair.friction);
+  rest.pair[lane] = pairIndex;
+  const auto shares = units_.shares(a.mass, b.mass);
+  block.shareA[lane] = shares.a;
+  in.normalX[lane] = units_.unit(pair.localNormal.x);
+  in.normalY[lane] = units_.unit(pair.localNormal.y);
+  in.cosA[lane] = units_.unit(a.rotation.x);
+  in.sinA[lane] = units_.unit(a.rotation.y);
+  in.cosB[lane] = units_.unit(b.rotation.x);
+  in.sinB[lane] = units_.unit(b.rotation.y);
+  if constexpr (kIntegers) {
+    in.momentA[lane] = momentPart(shares.a, moments_[a.start]);
+    in.momentB[lane] = momentPart((1 << N::kUnitBits) - shares.a, moments_[b.start]);
+  } else {
+    Vector<S> reachA, reachB;
+    for (int i = 0; FixedNumber<S> && i < pair.count; ++i) {
+      const Vector<S> toA = a.arm(pair.contacts[i].anchorA), toB = b.arm(pair.contacts[i].anchorB);
+      reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
+      reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
+    }
+    in.momentA[lane] = heldMoment((*starts_)[a.start].momentPerMass * shares.a, reachA);
+    in.momentB[lane] = heldMoment((*starts_)[b.start].momentPerMass * (S(1) - shares.a), reachB);
+    if constexpr (!N::kStoresSpins) {
+      block.moments.momentA[lane] = in.momentA[lane];
+      block.moments.momentB[lane] = in.momentB[lane];
+    }
+  }
+  std::int64_t misfit = 0;
+  for (int i = 0; i < pair.count; ++i) {
+    const Contact<S>& contact = pair.contacts[i];
+    auto& to = in.point[i];
+    const auto put = [&](auto& x, auto& y, const Vector<S>& arm, int radiusBits) {
+      if constexpr (kIntegers) {
+        // No arm matters of what does not move.
+        const bool any = radiusBits == kAnyRadiusBits;
+        x[lane] = any ? 0 : units_.arm(arm.x, radiusBits);
+        y[lane] = any ? 0 : units_.arm(arm.y, radiusBits);
+      } else {
+        x[lane] = arm.x;
+        y[lane] = arm.y;
+      }
+    };
+    put(to.armAX, to.armAY, a.arm(contact.anchorA), a.radiusBits);
+    put(to.armBX, to.armBY, b.arm(contact.anchorB), b.radiusBits);
+    to.present[lane] = kPresent<N>;
+    const auto kept = [&](S speed) { return units_.perUnit(units_.sum(speed, misfit), shares.perSpeed); };
+    auto& point = block.point[i];
+    point.normal.sum[lane] = kept(clamp(contact.normalSpeed, S(0), kMaxSum<S>));
+    point.tangent.sum[lane] = kept(clamp(contact.tangentSpeed, -kMaxSum<S>, kMaxSum<S>));
+    rest.normalTotal[i][lane] = rest.tangentTotal[i][lane] = rest.bounce[i][lane] = typename N::Sum(0);
+  }
+  for (int i = pair.count; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, in, lane, i);
+  return misfit == 0;
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::closeBlock(std::uint32_t at, int pairs, S bounceThreshold, const Taken& taken) {
+  bool fits = passes_.prepare(taken.input, blocks_[at], bodies_.data()) == 0;
+  for (int lane = 0; lane < pairs; ++lane) fits &= placePoints(at, lane, bounceThreshold, taken);
+  return fits;
+}
+
+/// Fills what a pair takes from where its bodies are, which 32 bits do not hold, and how fast.
+template <Scalar S, class N>
+bool BlockSolver<S, N>::placePoints(std::uint32_t at, int lane, S bounceThreshold, const Taken& taken) {
+  Block& block = blocks_[at];
+  const Pair<S>& pair = *taken.pair[lane];
+  const SoftFrame<S>&a = *taken.a[lane], &b = *taken.b[lane];
+  const Vector<S> n(units_.fromUnit(block.normalX[lane]), units_.fromUnit(block.normalY[lane]));
+  const Vector<S> between = b.center - a.center;
+  const S centers = dot(n, between);
+  std::int64_t misfit = 0;
+  block.surface[lane] =
+      pair.surfaceVelocity == Vector<S>() ? Speed(0) : units_.speed(cross(n, pair.surfaceVelocity), misfit);
+  const bool near = !kIntegers || max(a.radiusBits, b.radiusBits) <= kNearBits;
+  for (int i = 0; i < pair.count; ++i) {
+    const Contact<S>& contact = pair.contacts[i];
+    const auto& tangent = block.point[i].tangent;
+    S apart;
+    if (near) [[likely]] {
+      apart = centers + (units_.fromArm(tangent.armB[lane], b.radiusBits) -
+                         units_.fromArm(tangent.armA[lane], a.radiusBits));
+    } else {
+      apart = dot(n, between + (rotate(b.arm(contact.anchorB), b.rotation) -
+                                rotate(a.arm(contact.anchorA), a.rotation)));
+    }
+    block.point[i].separation[lane] = units_.way(clamp(apart, S(-(1 << 10)), S(1 << 10)));
+    if (pair.elasticity != S(0) || contact.normalSpeed == S(0)) {
+      rests_[at].bounce[i][lane] = units_.sum(bounceOf(block, lane, i, bounceThreshold, taken), misfit);
+    }
+  }
+  return misfit == 0;
+}
+
+/// The speed that a bounce shall leave; notes a strike.
+template <Scalar S, class N>
+S BlockSolver<S, N>::bounceOf(Block& block, int lane, int point, S bounceThreshold,
+                              const Taken& taken) const {
+  const Pair<S>& pair = *taken.pair[lane];
+  const SoftFrame<S>&a = *taken.a[lane], &b = *taken.b[lane];
+  const SoftStart<S>&startA = (*starts_)[a.start], &startB = (*starts_)[b.start];
+  const auto& axis = block.point[point].normal;
+  const S approach = dot(units_.fromUnit(block.normalX[lane]), startB.velocity[0] - startA.velocity[0],
+                         units_.fromUnit(block.normalY[lane]), startB.velocity[1] - startA.velocity[1]) +
+                     cross(units_.fromArm(axis.armB[lane], b.radiusBits), startB.velocity[2],
+                           units_.fromArm(axis.armA[lane], a.radiusBits), startA.velocity[2]);
+  if (approach >= -bounceThreshold) return S(0);
+  if (pair.contacts[point].normalSpeed == S(0)) block.strikes = 1;
+  if (pair.elasticity == S(0)) return S(0);
+  block.bounces = 1;
+  const S most = pair.elasticity > S(1) ? kMaxSum<S> / pair.elasticity : kMaxSum<S>;
+  return pair.elasticity * min(-approach, most);
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::setFriction(Block& block, int lane, S friction) {
+  if constexpr (std::same_as<N, FastNumbers>) {
+    // Below 8 as it is; all of a block have one unit.
+    const S most = min(friction, S(511));
+    const int whole = max(static_cast<int>(std::bit_width(raw::magnitude(most.raw()))) - 35, 0);
+    if (whole > block.frictionShift) {
+      for (int i = 0; i < lane; ++i) block.friction[i] >>= whole - block.frictionShift;
+      block.frictionShift = static_cast<std::uint8_t>(whole);
+    }
+    block.friction[lane] = static_cast<std::int32_t>(min(
+        units::shifted(most.raw(), 32 - N::kFrictionBits + block.frictionShift), std::int64_t{0x7fffffff}));
+  } else if constexpr (kIntegers) {
+    // Held at 511: hardly anything slips at a tenth of it.
+    block.friction[lane] =
+        static_cast<std::int32_t>(units::shifted(min(friction, S(511)).raw(), 32 - N::kFrictionBits));
+  } else {
+    block.friction[lane] = friction;
+  }
+}
+
+/// What contacts gave a velocity in the last substep is its difference from the base. Preparing has given
+/// what they kept to the velocities.
+template <Scalar S, class N>
+void BlockSolver<S, N>::tellKept(std::uint32_t begin, std::uint32_t end) {
+  for (std::uint32_t i = begin; i < end; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Speed before = drives_[i].base[k];
+      drives_[i].base[k] = static_cast<Speed>(before - (bodies_[i].velocity[k] - before));
+      bodies_[i].velocity[k] = before;
+    }
+  }
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::run(bool strikes, Crew& crew) {
+  const auto count = static_cast<std::uint32_t>(bodies_.size());
+  Finding left;
+  const auto pass = [&](ContactPass<N> kernel) {
+    left.note(passOverGroups(kernel, blocks_, rests_, *groups_, bodies_, constants_, crew));
+  };
+  const auto bodyPass = [&](BodyPass<N> kernel) {
+    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+      left.note(kernel(bodies_.data() + begin, drives_.data() + begin, marks_.data() + begin, end - begin,
+                       constants_) != 0);
+    });
+  };
+  crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) { tellKept(begin, end); });
+  for (int i = 0; i < settings_->substeps; ++i) {
+    bodyPass(passes_.drive);
+    pass(i == 0 ? passes_.start : passes_.solve);
+    for (int more = 0; strikes && more < kMorePasses; ++more) pass(passes_.solve);
+    bodyPass(passes_.move);
+    pass(passes_.relax);
+    if (left) return false;
+  }
+  return true;
+}
+
+template <Scalar S, class N>
+SoftMotion<S> BlockSolver<S, N>::motion(std::uint32_t index) const {
+  const SoftStart<S>& start = (*starts_)[index];
+  const SoftBody<N>& body = bodies_[index];
+  SoftMotion<S> motion;
+  const unsigned held = marks_[index].held;
+  if ((held & 3) != 0) motion.held = Body<S>::kHeldSpeed;
+  if ((held & 4) != 0) motion.held = static_cast<std::uint8_t>(motion.held | Body<S>::kHeldSpin);
+  for (int k = 0; k < 3; ++k) {
+    const int radius = k == 2 ? start.radiusBits : 0;
+    if constexpr (kIntegers) {
+      // What is finer than the unit of this step stays.
+      std::int64_t misfit = 0;
+      const Speed from =
+          k == 2 ? units_.turn(start.velocity[k], radius, misfit) : units_.speed(start.velocity[k], misfit);
+      const Speed change = static_cast<Speed>(body.velocity[k] - from);
+      motion.velocity[k] =
+          start.velocity[k] + (k == 2 ? units_.fromTurn(change, radius) : units_.fromSpeed(change));
+    } else {
+      motion.velocity[k] =
+          k == 2 ? units_.fromTurn(body.velocity[k], radius) : units_.fromSpeed(body.velocity[k]);
+    }
+    motion.moved[k] = units_.fromWay(body.moved[k], radius);
+  }
+  return motion;
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::bounce() {
+  for (std::uint32_t i = 0; i < blockCount_; ++i) {
+    Block& block = blocks_[i];
+    if (block.bounces == 0) continue;
+    Rest& rest = rests_[i];
+    for (int lane = 0; lane < N::kLanes; ++lane) {
+      const std::uint32_t indexA = block.bodyA[lane], indexB = block.bodyB[lane];
+      const int radiusA = (*starts_)[indexA].radiusBits, radiusB = (*starts_)[indexB].radiusBits;
+      const Vector<S> n(units_.fromUnit(block.normalX[lane]), units_.fromUnit(block.normalY[lane]));
+      const S shareA = units_.fromUnit(block.shareA[lane]);
+      for (int k = 0; k < block.count[lane]; ++k) {
+        auto& axis = block.point[k].normal;
+        const S wanted = min(units_.fromSum(rest.bounce[k][lane]), kMaxSum<S>);
+        if (wanted == S(0) || units_.fromSum(rest.normalTotal[k][lane]) == S(0)) continue;
+        const auto speedOf = [&](std::uint32_t body, int which) {
+          return units_.fromSpeed(bodies_[body].velocity[which]);
+        };
+        const S armA = units_.fromArm(axis.armA[lane], radiusA);
+        const S armB = units_.fromArm(axis.armB[lane], radiusB);
+        const S speed =
+            dot(n.x, speedOf(indexB, 0) - speedOf(indexA, 0), n.y, speedOf(indexB, 1) - speedOf(indexA, 1)) +
+            cross(armB, units_.fromTurn(bodies_[indexB].velocity[2], radiusB), armA,
+                  units_.fromTurn(bodies_[indexA].velocity[2], radiusA));
+        S spinA, spinB;
+        if constexpr (N::kStoresSpins) {
+          spinA = units_.fromSpin(axis.spinA[lane], radiusA);
+          spinB = units_.fromSpin(axis.spinB[lane], radiusB);
+        } else {
+          spinA = block.moments.momentA[lane] * armA;
+          spinB = block.moments.momentB[lane] * armB;
+        }
+        // Asked for once, and so more exact than that of the passes, which come nearer each time.
+        const S mass = reciprocal(S(1) + dot(spinA, armA, spinB, armB));
+        const S before = units_.fromSum(axis.sum[lane]);
+        const S after = clamp(before + mass * (wanted - speed), S(0), kMaxSum<S>);
+        const S change = after - before;
+        std::int64_t misfit = 0;
+        axis.sum[lane] = units_.sum(after, misfit);
+        rest.normalTotal[k][lane] = units_.sum(units_.fromSum(rest.normalTotal[k][lane]) + change, misfit);
+        const auto push = [&](std::uint32_t index, S share, S along, S turn, int radiusBits) {
+          SoftBody<N>& body = bodies_[index];
+          body.velocity[0] =
+              heldSpeed<S, N>(units_.speed(speedOf(index, 0) + share * (n.x * along), misfit), 0);
+          body.velocity[1] =
+              heldSpeed<S, N>(units_.speed(speedOf(index, 1) + share * (n.y * along), misfit), 1);
+          body.velocity[2] = heldSpeed<S, N>(
+              units_.turn(units_.fromTurn(body.velocity[2], radiusBits) + turn, radiusBits, misfit), 2);
+        };
+        const auto turned = [&](S spin) {
+          if constexpr (FixedNumber<S>) {
+            return ScalarLanes<S>::spinOf(spin, change);
+          } else {
+            return spin * change;
+          }
+        };
+        if ((block.fixedA >> lane & 1) == 0) push(indexA, shareA, -change, -turned(spinA), radiusA);
+        if ((block.fixedB >> lane & 1) == 0) push(indexB, S(1) - shareA, change, turned(spinB), radiusB);
+      }
+    }
+  }
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::store(std::vector<Pair<S>>& pairs, Crew& crew) const {
+  crew.each(blockCount_, kBlockGrain<N>, [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i) storeBlock(i, pairs);
+  });
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const {
+  const Block& block = blocks_[at];
+  const Rest& rest = rests_[at];
+  for (int lane = 0; lane < N::kLanes; ++lane) {
+    if (rest.pair[lane] == Rest::kNoPair) continue;
+    // The lighter body has the larger share.
+    const auto share = units_.larger(block.shareA[lane]);
+    Pair<S>& pair = pairs[rest.pair[lane]];
+    const auto speedOf = [&](typename N::Sum sum) { return units_.perMass(share, sum); };
+    for (int k = 0; k < block.count[lane]; ++k) {
+      Contact<S>& contact = pair.contacts[k];
+      contact.normalSpeed = speedOf(block.point[k].normal.sum[lane]);
+      contact.tangentSpeed = speedOf(block.point[k].tangent.sum[lane]);
+      contact.normalTotal = min(speedOf(rest.normalTotal[k][lane]), kMaxSum<S>);
+      contact.tangentTotal = clamp(speedOf(rest.tangentTotal[k][lane]), -kMaxSum<S>, kMaxSum<S>);
+      highWater<S>("soft step: impulse total", contact.normalTotal);
+    }
+  }
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class BlockSolver<double, PlainNumbers<double, false>>;
+#endif
+template class BlockSolver<Fixed, PlainNumbers<Fixed, true>>;
+template class BlockSolver<Fixed, WideNumbers>;
+template class BlockSolver<Fixed, FastNumbers>;
+template class BlockSolver<CheckedFixed, PlainNumbers<CheckedFixed, true>>;
+template class BlockSolver<CheckedFixed, WideNumbers>;
+template class BlockSolver<CheckedFixed, FastNumbers>;
+
+}  // namespace samestep

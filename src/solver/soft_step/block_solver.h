@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <vector>
+
+#include <samestep/arbiter.h>
+#include <samestep/body.h>
+#include <samestep/kernel.h>
+
+#include "solver/kernels/contact_block.h"
+#include "solver/kernels/soft_units.h"
+#include "solver/soft_step/block_groups.h"
+
+namespace samestep {
+
+/// The pairs of a soft step, prepared for the kernels of one kind of numbers, and the substeps.
+template <Scalar S, class N>
+class BlockSolver {
+ public:
+  using Numbers = N;
+
+  BlockSolver();
+
+  /// @param target  one that is available
+  void setKernel(KernelTarget target);
+  /// Takes bodies, whose first stands for all that never move, and makes room for the groups, whose blocks
+  /// are then to be filled.
+  /// @param mostKept  no kept impulse is larger, as a speed of the lighter body, m/s
+  /// @return false where the numbers of the step do not fit
+  bool begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
+             const std::vector<BlockGroup>& groups, S mostKept);
+  /// The pairs of a block on their way into it.
+  struct Taken {
+    BlockInput<N> input;
+    const Pair<S>* pair[N::kLanes];
+    const SoftFrame<S>*a[N::kLanes], *b[N::kLanes];
+  };
+  /// Readies a block, whose lanes hold anything, for so many pairs.
+  void openBlock(std::uint32_t at, int pairs, Taken& taken);
+  /// Puts a pair into a lane of a block.
+  /// @return false where a number does not fit
+  bool addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex,
+               const SoftFrame<S>& a, const SoftFrame<S>& b, bool roundA, bool roundB, Taken& taken);
+  /// Prepares the points of a block that has its pairs and gives their kept impulses to the bodies.
+  /// @return false where a number does not fit
+  bool closeBlock(std::uint32_t at, int pairs, S bounceThreshold, const Taken& taken);
+  /// Whether any point of the block may bounce; whether any strikes.
+  bool bounces(std::uint32_t at) const { return blocks_[at].bounces != 0; }
+  bool strikes(std::uint32_t at) const { return blocks_[at].strikes != 0; }
+  /// Makes all substeps.
+  /// @param strikes  whether any point does: nothing kept from the last step says yet how the blow goes on
+  ///                 through a pile, so that springs are solved three times in each substep
+  /// @return false where a number left the range on the way: nothing is then worth anything
+  bool run(bool strikes, Crew& crew);
+  /// After the last one: what bounces.
+  void bounce();
+  SoftMotion<S> motion(std::uint32_t body) const;
+  /// Writes the impulses back.
+  void store(std::vector<Pair<S>>& pairs, Crew& crew) const;
+
+ private:
+  using Block = ContactBlock<N>;
+  using Rest = BlockRest<N>;
+  using Speed = typename N::Speed;
+  static constexpr bool kIntegers = std::derived_from<N, IntegerUnits>;
+
+  void clearLane(std::uint32_t at, int lane, Taken& taken);
+  bool placePoints(std::uint32_t at, int lane, S bounceThreshold, const Taken& taken);
+  S bounceOf(Block& block, int lane, int point, S bounceThreshold, const Taken& taken) const;
+  void tellKept(std::uint32_t begin, std::uint32_t end);
+  void setFriction(Block& block, int lane, S friction);
+  void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
+
+  const SoftSettings<S>* settings_ = nullptr;
+  const std::vector<SoftStart<S>>* starts_ = nullptr;
+  const std::vector<BlockGroup>* groups_ = nullptr;
+  SoftUnits<S, N> units_;
+  SoftConstants<N> constants_{};
+  SoftPasses<N> passes_;
+  std::vector<SoftBody<N>> bodies_;
+  std::vector<SoftDrive<N>> drives_;
+  std::vector<SoftMarks> marks_;
+  /// Of integers: inverse moment times mass by the squared radius, in units of spins.
+  std::vector<std::int32_t> moments_;
+  /// The first blockCount_ are in use; the rest keep their memory.
+  std::vector<Block> blocks_;
+  std::vector<Rest> rests_;
+  std::uint32_t blockCount_ = 0;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class BlockSolver<double, PlainNumbers<double, false>>;
+#endif
+extern template class BlockSolver<Fixed, PlainNumbers<Fixed, true>>;
+extern template class BlockSolver<Fixed, WideNumbers>;
+extern template class BlockSolver<Fixed, FastNumbers>;
+extern template class BlockSolver<CheckedFixed, PlainNumbers<CheckedFixed, true>>;
+extern template class BlockSolver<CheckedFixed, WideNumbers>;
+extern template class BlockSolver<CheckedFixed, FastNumbers>;
+
+}  // namespace samestep

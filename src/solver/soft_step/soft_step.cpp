@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "solver/soft_step/soft_step.h"
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+
+template <Scalar S>
+Softness<S> makeSoftness(S hertz, S dampingRatio, S substep) {
+  const S omega = S(2) * kPi<S> * hertz;
+  const S a1 = S(2) * dampingRatio + substep * omega;
+  // Also where a spring is too weak for the scalar to tell from none.
+  if (hertz == S(0) || a1 == S(0)) return {S(0), S(1), S(0)};
+  const S a2 = substep * omega * a1;
+  const S a3 = reciprocal(S(1) + a2);
+  // More, in substeps of less than 60 us or without damping, would leave the range.
+  constexpr S kMost = S(1 << 14);
+  return {omega < a1 * kMost ? omega / a1 : kMost, a2 * a3, a3};
+}
+
+template <Scalar S>
+void SoftStep<S>::clear() {
+  starts.assign(1, {});
+  starts[0].radiusBits = kAnyRadiusBits;
+  free.clear();
+  groups.clear();
+}
+
+template <Scalar S>
+void SoftStep<S>::addFree(const SoftStart<S>& start) {
+  constexpr S kLimits[3] = {kMaxSpeed<S>, kMaxSpeed<S>, kMaxAngularSpeed<S>};
+  SoftMotion<S>& motion = free.emplace_back();
+  for (int k = 0; k < 3; ++k) {
+    S velocity = start.velocity[k];
+    S moved = S(0);
+    for (int i = 0; i < settings.substeps; ++i) {
+      const S next =
+          start.kept == S(1) ? velocity + start.push[k] : mulAdd(velocity, start.kept, start.push[k]);
+      velocity = clamp(next, -kLimits[k], kLimits[k]);
+      if (velocity != next) [[unlikely]]
+        motion.held =
+            static_cast<std::uint8_t>(motion.held | (k == 2 ? Body<S>::kHeldSpin : Body<S>::kHeldSpeed));
+      moved = mulAdd(velocity, settings.substep, moved);
+    }
+    motion.velocity[k] = velocity;
+    motion.moved[k] = moved;
+  }
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template Softness<double> makeSoftness(double, double, double);
+template struct SoftStep<double>;
+#endif
+template Softness<Fixed> makeSoftness(Fixed, Fixed, Fixed);
+template struct SoftStep<Fixed>;
+template Softness<CheckedFixed> makeSoftness(CheckedFixed, CheckedFixed, CheckedFixed);
+template struct SoftStep<CheckedFixed>;
+
+}  // namespace samestep
