@@ -89,13 +89,17 @@ class Table(unittest.TestCase):
         lines = platforms.table([(platforms.PLATFORMS[0], outcome_of("equal", "DIFFERENT: x"))])
         self.assertEqual([line.split(" | ")[-1] for line in lines[2:]], ["equal |", "DIFFERENT: x |"])
 
-    def test_the_readme_takes_it_between_the_marks(self):
+    def test_the_page_takes_it_between_the_marks_and_the_readme_the_count(self):
         with tempfile.TemporaryDirectory() as folder:
+            platforms.PAGE = Path(folder) / "platforms.md"
             platforms.README = Path(folder) / "README.md"
-            start, end = platforms.README_MARKS
-            platforms.README.write_text(f"before\n{start}old\n{end}after\n")
-            platforms.update_readme(["new"])
-            self.assertEqual(platforms.README.read_text(), f"before\n{start}new\n{end}after\n")
+            start, end = platforms.PAGE_MARKS
+            platforms.PAGE.write_text(f"before\n{start}old\n{end}after\n")
+            platforms.README.write_text("Compared so far: 1 platforms, 1 equal, after every tick\n")
+            platforms.update_docs(["new"], ["37", "36"])
+            self.assertEqual(platforms.PAGE.read_text(), f"before\n{start}new\n{end}after\n")
+            self.assertEqual(platforms.README.read_text(),
+                             "Compared so far: 37 platforms, 36 equal, after every tick\n")
 
 
 class Names(unittest.TestCase):
