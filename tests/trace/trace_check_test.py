@@ -22,7 +22,7 @@ def problems(table, expected="Body,bodySetMass\n", sources=None):
         root = Path(folder)
         for name, text in {**SOURCES, **(sources or {}), "mis.csv": table, "expected.txt": expected}.items():
             path = root / name
-            path.parent.mkdir(exist_ok=True)
+            path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
         found = trace_check.check(root / "mis.csv", root / "expected.txt", trace_check.Sources(root))
         return [f"{name}: {message}" for _, name, message in found]
