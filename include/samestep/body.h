@@ -69,8 +69,9 @@ class Body {
   /// Whether contacts may turn it.
   bool rotates() const { return rotates_ != 0; }
 
-  /// Turns a free body into another type. A static body loses its velocity; a dynamic one has the mass and
-  /// moment it was last given. For a body in a Space use Space::setType.
+  /// Turns a free body into another type, which forgets the bias velocities. A static body loses its
+  /// velocity; a dynamic one has the mass and moment it was last given. For a body in a Space use
+  /// Space::setType.
   /// @throws AttachedBody
   /// MIS: bodySetType
   void setType(BodyType type);
@@ -95,8 +96,9 @@ class Body {
   /// @throws StaticBodyMass, NaNMoment, NegativeMoment, InfiniteMoment, MomentOutOfRange
   /// MIS: bodySetMoment
   void setMoment(S moment);
-  /// Mass, moment and centre of mass at once, as a set of shapes gives them; the origin of the body stays
-  /// where it is. MIS: bodyAccumulateMassFromShapes (the body's part)
+  /// Mass, moment and centre of mass at once, as a set of shapes gives them. The origin of the body stays
+  /// where it is, and the body moves on as it does: see setCenterOfMass.
+  /// MIS: bodyAccumulateMassFromShapes (the body's part)
   /// @throws IllegalBody when the sum is outside the supported range
   void setMassProperties(const MassProperties<S>& properties);
 
@@ -127,10 +129,13 @@ class Body {
   /// From body to world coordinates.
   Transform<S> transform() const { return Transform<S>::rigid(position(), rotation_); }
 
+  /// Also forgets the bias velocities: what pushed it out of an overlap is not to move it on from there.
   /// @throws IllegalBody outside the world
   /// MIS: bodySetPosition
   void setPosition(const Vector<S>& position);
-  /// Moves the centre of mass within the body; the body's origin stays in place.
+  /// Moves the centre of mass within the body. The body's origin stays in place, and every point of the body
+  /// keeps its velocity: that of the new centre is what the body's material had there, held at the speed
+  /// limit.
   /// @throws IllegalBody farther than 2^8 m from the origin
   /// MIS: bodySetCenterOfMass
   void setCenterOfMass(const Vector<S>& center);
@@ -140,7 +145,7 @@ class Body {
   /// @throws IllegalBody
   /// MIS: bodySetForce
   void setForce(const Vector<S>& force);
-  /// Turns about the body's origin, which stays in place.
+  /// Turns about the body's origin, which stays in place. Forgets the bias velocities, as setPosition does.
   /// @throws IllegalBody
   /// MIS: bodySetAngle
   void setAngle(S angle);
@@ -240,6 +245,11 @@ class Body {
   Motion accelerated(const Vector<S>& gravity, S damping, S dt) const;
   /// What gravity, force and torque do to the velocities, per second.
   Motion acceleration(const Vector<S>& gravity) const;
+  /// Moves the centre of mass within the body, whose material moves on as before.
+  void moveCenter(const Vector<S>& center);
+  /// Of a body that is not dynamic: its mass is to be summed over its shapes when it becomes so.
+  void forgetMass();
+  void forgetBias();
   /// Why the body cannot be stepped, or nullptr.
   const char* cannotStep() const;
   /// Takes the velocities, held at the limits; says what was held.

@@ -263,6 +263,7 @@ class Space {
   void setCollisionPersistence(std::uint32_t steps);
   /// @throws ValueOutOfRange outside (0, 2^20]
   void setWorldExtent(S extent);
+  /// Forgets the bias velocities of all bodies, if it is another one.
   /// @throws ValueOutOfRange for a value that names no solver
   void setSolver(SolverKind kind);
   /// @throws ValueOutOfRange for a value that names no precision
@@ -304,7 +305,11 @@ class Space {
   ///            generation odd and higher than any its slot has had, 1 for the first
   /// @throws as add; IndexOutOfBounds, IllegalId
   BodyId add(const Body<S>& body, BodyId id);
-  /// Takes in a copy, on the body the shape names; a shape with mass adds it to a dynamic body.
+  /// Takes in a copy, on the body the shape names. Whenever a shape with mass is added, removed or replaced,
+  /// mass, moment and centre of mass of its body become those of all its shapes with mass together, in place
+  /// of any that were set by hand, and 0 after the last; shapes without mass change nothing. The centre may
+  /// move by that: each point of the body keeps its velocity, see Body::setCenterOfMass. Of a body that is
+  /// not dynamic all of that shows when it becomes dynamic.
   /// @throws DuplicateShape, AttachedShape, BodyNotFound, IllegalBody, SizeOutOfRange, SpaceLocked
   /// MIS: spaceAddShape, bodyAddShape
   ShapeId add(const Shape<S>& shape);
@@ -314,7 +319,7 @@ class Space {
   /// @throws BodyNotFound, MainStaticBody, BodyHasShapes, SpaceLocked
   /// MIS: spaceRemoveBody
   void remove(BodyId id);
-  /// Calls separate for what it touches; a shape with mass takes it from a dynamic body.
+  /// Calls separate for what it touches; of mass see add.
   /// @throws ShapeNotFound, SpaceLocked
   /// MIS: spaceRemoveShape, bodyRemoveShape
   void remove(ShapeId id);
@@ -333,7 +338,7 @@ class Space {
   const Body<S>& body(BodyId id) const;
   /// @throws ShapeNotFound
   const Shape<S>& shape(ShapeId id) const;
-  /// Replaces a shape, all or nothing; it keeps its id and body. Mass follows.
+  /// Replaces a shape, all or nothing; it keeps its id and body. Of mass see add.
   /// @throws ShapeNotFound, IllegalBody, SizeOutOfRange, SpaceLocked for a change of geometry or mass
   void replace(ShapeId id, const Shape<S>& shape);
   /// Changes a shape: `change(id, [](Shape<S>& shape) { shape.setFriction(f); })`. All or nothing.
@@ -343,11 +348,15 @@ class Space {
     apply(copy);
     replace(id, copy);
   }
+  /// Also forgets the bias velocities. A body that becomes dynamic has the mass it had when it was so last,
+  /// unless shapes with mass came, went or changed since: those count as if it had been dynamic all along.
+  /// The same type again changes nothing.
   /// @throws SpaceLocked, BodyNotFound; MainStaticBody for the designated static body; SizeOutOfRange or
   ///         IllegalBody where its shapes are too large or too heavy for a body that moves
   /// MIS: bodySetType
   void setType(BodyId id, BodyType type);
-  /// Sets mass, moment and centre of mass of a dynamic body to those of its shapes that have mass.
+  /// Sets mass, moment and centre of mass of a body to those of its shapes that have mass, 0 without any; of
+  /// one that is not dynamic it shows when it becomes so.
   /// @throws BodyNotFound, IllegalBody
   /// MIS: bodyAccumulateMassFromShapes
   void accumulateMassFromShapes(BodyId id);
@@ -676,6 +685,8 @@ class Space {
   template <class Collect>
   void collectFound(Collect&& collect);
   MassProperties<S> massOfShapes(BodyId id, std::uint32_t replaced, const Shape<S>* by) const;
+  bool anyShapeWeighs(BodyId id, std::uint32_t replaced, const Shape<S>* by) const;
+  void takeMass(BodyId id, std::uint32_t replaced, const Shape<S>* by);
   void checkNew(const Body<S>& body) const;
   void attach(BodyId id);
   void insert(const Shape<S>& shape, ShapeId id);

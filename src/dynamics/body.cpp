@@ -121,6 +121,7 @@ void Body<S>::setType(BodyType type) {
   require<Fault::AttachedBody>(!id_.valid(),
                                "The type of a body in a space is changed by the space: see Space::setType.");
   type_ = type;
+  forgetBias();
   if (type == BodyType::staticBody) {
     velocity_ = {};
     angularVelocity_ = S(0);
@@ -158,13 +159,37 @@ void Body<S>::setMassProperties(const MassProperties<S>& properties) {
   require<Fault::IllegalBody>(mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>),
                               "Body's mass, summed over its shapes, is outside the supported range.");
   require<Fault::IllegalBody>(within(properties.centerOfMass, kMaxCenterOfMass<S>), kBadCenterOfMass);
-  const Vector<S> origin = position();
 
   mass_ = mass;
   moment_ = properties.moment;
-  centerOfMass_ = properties.centerOfMass;
-  center_ = origin + rotate(centerOfMass_, rotation_);
+  moveCenter(properties.centerOfMass);
   derive();
+}
+
+template <Scalar S>
+void Body<S>::forgetMass() {
+  mass_ = S(0);
+  moment_ = Scaled<S>{};
+  derive();
+}
+
+template <Scalar S>
+void Body<S>::forgetBias() {
+  velocityBias_ = {};
+  angularVelocityBias_ = S(0);
+}
+
+template <Scalar S>
+void Body<S>::moveCenter(const Vector<S>& center) {
+  const Vector<S> origin = position();
+  if (center != centerOfMass_) {
+    // The material of the body moves on as it does, and with it what is its centre from now on.
+    const Vector<S> across = perp(rotate(center - centerOfMass_, rotation_));
+    velocity_ = heldWithin(mulAdd(across, angularVelocity_, velocity_), kMaxSpeed<S>);
+    velocityBias_ = heldWithin(mulAdd(across, angularVelocityBias_, velocityBias_), kMaxSpeed<S>);
+  }
+  centerOfMass_ = center;
+  center_ = origin + rotate(centerOfMass_, rotation_);
 }
 
 template <Scalar S>
@@ -172,15 +197,15 @@ void Body<S>::setPosition(const Vector<S>& position) {
   require<Fault::IllegalBody>(within(position, kMaxWorldExtent<S>), kBadPosition);
 
   center_ = position + rotate(centerOfMass_, rotation_);
+  // A push out of where it no longer is.
+  forgetBias();
 }
 
 template <Scalar S>
 void Body<S>::setCenterOfMass(const Vector<S>& center) {
   require<Fault::IllegalBody>(within(center, kMaxCenterOfMass<S>), kBadCenterOfMass);
-  const Vector<S> origin = position();
 
-  centerOfMass_ = center;
-  center_ = origin + rotate(centerOfMass_, rotation_);
+  moveCenter(center);
 }
 
 template <Scalar S>
@@ -207,6 +232,7 @@ void Body<S>::setAngle(S angle) {
   const SinCos<S> turn = sincos(angle);
   rotation_ = {turn.cos, turn.sin};
   center_ = origin + rotate(centerOfMass_, rotation_);
+  forgetBias();
 }
 
 template <Scalar S>
@@ -312,8 +338,7 @@ std::uint8_t Body<S>::holdPosition(S dt, S extent) {
   const S angle = (angularVelocity_ + angularVelocityBias_) * dt;
   // The bias only pushes overlapping shapes apart. Kept past this step, it would become momentum that no
   // impulse ever put in.
-  velocityBias_ = {};
-  angularVelocityBias_ = S(0);
+  forgetBias();
   return holdMoved(by, angle, extent);
 }
 

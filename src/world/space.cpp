@@ -96,7 +96,10 @@ void Space<S>::setSettings(const Settings<S>& settings) {
   check(settings);
   const bool otherContacts =
       settings.solver != state_.settings.solver || settings.contactMargin != state_.settings.contactMargin;
+  const bool otherSolver = settings.solver != state_.settings.solver;
   state_.settings = settings;
+  // What sequential impulses left to push in the next step means nothing to another solver, nor later.
+  if (otherSolver) state_.bodies.each([](BodyId, Body<S>& body) { body.forgetBias(); });
   if (!otherContacts) return;
   for (Pair<S>& pair : state_.pairs) pair.manifold = Manifold::unknown;
 }
@@ -293,12 +296,13 @@ void Space<S>::setType(BodyId id, BodyType type) {
   Body<S>& kept = body(id);
   require<Fault::MainStaticBody>(id != state_.staticBody || type == BodyType::staticBody,
                                  "The designated static body of a space stays static.");
+  if (type == kept.type()) return;
   Body<S> changed = kept.detached();
   changed.setType(type);
   for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
     checkShape(state_.shapes.valueAt(i), changed);
   }
-  if (type == BodyType::dynamicBody) {
+  if (changed.isDynamic() && changed.mass() == S(0)) {
     const MassProperties<S> mass = massOfShapes(id, Impl::kNone, nullptr);
     if (mass.mass > S(0)) changed.setMassProperties(mass);
   }
@@ -361,7 +365,32 @@ MassProperties<S> Space<S>::massOfShapes(BodyId id, std::uint32_t replaced, cons
     }
     mass = sum;
   });
-  return {toScalar<S>(mass), moment, {toScalar<S>(x), toScalar<S>(y)}};
+  return {saturated<S>(mass), moment, {toScalar<S>(x), toScalar<S>(y)}};
+}
+
+/// Whether any shape of a body has mass, with `by` in place of one of them as in massOfShapes.
+template <Scalar S>
+bool Space<S>::anyShapeWeighs(BodyId id, std::uint32_t replaced, const Shape<S>* by) const {
+  if (by != nullptr && by->mass() > S(0)) return true;
+  for (std::uint32_t i = firstShape(id); i != Impl::kNone; i = nextShape(i)) {
+    if (i != replaced && state_.shapes.valueAt(i).mass() > S(0)) return true;
+  }
+  return false;
+}
+
+/// Makes a body weigh what its shapes do, after a change of those that have mass. One that is not dynamic
+/// has no use for a mass, whose parts may be beyond what a dynamic one may have: it is summed when it
+/// becomes dynamic.
+template <Scalar S>
+void Space<S>::takeMass(BodyId id, std::uint32_t replaced, const Shape<S>* by) {
+  Body<S>& holder = state_.bodies.valueAt(id.index);
+  if (holder.isDynamic()) {
+    holder.setMassProperties(massOfShapes(id, replaced, by));
+  } else if (anyShapeWeighs(id, replaced, by)) {
+    holder.forgetMass();
+  } else {
+    holder.setMassProperties({});
+  }
 }
 
 template <Scalar S>
@@ -390,9 +419,7 @@ void Space<S>::insert(const Shape<S>& shape, ShapeId id) {
   checkShape(shape, holder);
   ensureCache();
   const BodyId bodyId = shape.body();
-  if (holder.isDynamic() && shape.mass() > S(0)) {
-    state_.bodies.valueAt(bodyId.index).setMassProperties(massOfShapes(bodyId, id.index, &shape));
-  }
+  if (shape.mass() > S(0)) takeMass(bodyId, id.index, &shape);
 
   impl_->shapesHashKnown = false;
   state_.shapes.store(id, shape);
@@ -422,9 +449,7 @@ void Space<S>::eraseShape(ShapeId id) {
   const BodyId bodyId = state_.shapes.valueAt(id.index).body();
   dropPairs(bodyId, id);
 
-  Body<S>& holder = state_.bodies.valueAt(bodyId.index);
-  const bool hadMass = state_.shapes.valueAt(id.index).mass() > S(0);
-  if (holder.isDynamic() && hadMass) holder.setMassProperties(massOfShapes(bodyId, id.index, nullptr));
+  if (state_.shapes.valueAt(id.index).mass() > S(0)) takeMass(bodyId, id.index, nullptr);
   impl_->dropBox(id.index);
   impl_->unlinkShape(bodyId.index, id.index);
   impl_->shapesHashKnown = false;
@@ -446,14 +471,15 @@ void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
   const std::span<const Vector<S>> before = kept.vertices(), after = next.vertices();
   const bool sameGeometry = next.type() == kept.type() && next.radius() == kept.radius() &&
                             std::equal(before.begin(), before.end(), after.begin(), after.end());
-  const bool sameMass = next.massInfo() == kept.massInfo();
+  // Where a shape without mass has its centroid is nothing to its body.
+  const bool weighs = next.mass() > S(0) || kept.mass() > S(0);
+  const bool sameMass = !weighs || next.massInfo() == kept.massInfo();
   if (!sameGeometry || !sameMass) {
     requireUnlocked();
     require<Fault::DegenerateShape>(next.wellFormed());
-    Body<S>& holder = state_.bodies.valueAt(kept.body().index);
-    checkShape(next, holder);
+    checkShape(next, state_.bodies.valueAt(kept.body().index));
     ensureCache();
-    if (holder.isDynamic() && !sameMass) holder.setMassProperties(massOfShapes(kept.body(), id.index, &next));
+    if (!sameMass) takeMass(kept.body(), id.index, &next);
     impl_->touch(kept.body().index);
   }
 
@@ -480,8 +506,9 @@ void Space<S>::forgetManifolds(ShapeId id) {
 
 template <Scalar S>
 void Space<S>::accumulateMassFromShapes(BodyId id) {
-  Body<S>& kept = body(id);
-  if (kept.isDynamic()) kept.setMassProperties(massOfShapes(id, Impl::kNone, nullptr));
+  require<Fault::BodyNotFound>(contains(id));
+  impl_->touch(id.index);
+  takeMass(id, Impl::kNone, nullptr);
 }
 
 template <Scalar S>
