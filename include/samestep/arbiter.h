@@ -10,6 +10,9 @@
 
 namespace samestep {
 
+template <Scalar S>
+struct ContactCallbacks;
+
 /// Where a pair of shapes stands. MIS: ArbiterState
 enum class ArbiterState : std::uint8_t {
   apart = 0,           ///< The boxes overlap, the shapes have not touched yet.
@@ -203,7 +206,7 @@ class Arbiter {
   const Pair<S>& pair() const { return pair_; }
 
  private:
-  friend class Space<S>;
+  friend struct ContactCallbacks<S>;
 
   Pair<S>& pair_;
   Body<S>* bodies_[2];

@@ -12,6 +12,8 @@ namespace samestep {
 
 template <Scalar S>
 class Space;
+template <Scalar S>
+struct BodyAccess;
 
 /// What moves a body. MIS: BodyType, with Chipmunk's kinematic bodies.
 enum class BodyType : std::uint8_t {
@@ -233,7 +235,7 @@ class Body {
   bool wellFormed() const;
 
  private:
-  friend class Space<S>;
+  friend struct BodyAccess<S>;
 
   struct Motion {
     Vector<S> velocity;

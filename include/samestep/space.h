@@ -4,207 +4,31 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <samestep/arbiter.h>
-#include <samestep/bb_tree.h>
 #include <samestep/body.h>
 #include <samestep/collision.h>
 #include <samestep/error.h>
+#include <samestep/events.h>
 #include <samestep/id.h>
 #include <samestep/kernel.h>
+#include <samestep/query.h>
 #include <samestep/remark.h>
+#include <samestep/saved_world.h>
+#include <samestep/settings.h>
 #include <samestep/shape.h>
-#include <samestep/slot_map.h>
+#include <samestep/state.h>
 #include <samestep/workers.h>
 
 namespace samestep {
 
-/// How contacts are solved.
-enum class SolverKind : std::uint8_t {
-  /// As the MIS and Chipmunk: `iterations` passes over all contacts for the speeds, with bias velocities that
-  /// push overlaps apart. Fits few contacts, and what must behave like Chipmunk.
-  sequentialImpulses = 0,
-  /// `substeps` small steps with soft contacts and relaxation: for equal work far more accurate in piles and
-  /// stacks.
-  softStep = 1,
-};
-
-/// What the soft step computes contacts with, where the scalar leaves a choice.
-enum class ContactPrecision : std::uint8_t {
-  /// To the unit of the scalar.
-  accurate = 0,
-  /// Fixed: in integers of 32 bits, more at a time: the accuracy of a float, relative to the fastest body
-  /// that touches anything and to the largest impulse. A step in which a number would not fit is made
-  /// accurately, see Space::accurateInstead. Double: no difference.
-  fast = 1,
-};
-
-/// What the MIS calls the state variables of a Space that a user sets, and those of the soft step.
 template <Scalar S>
-struct Settings {
-  SolverKind solver = SolverKind::softStep;
-  ContactPrecision precision = ContactPrecision::accurate;
-  std::uint8_t unused[2] = {};
-  /// Sequential impulses: how often all contacts are solved in a step, 1 to 1000.
-  std::int32_t iterations = 10;
-  /// Soft step: how many substeps a step has, 1 to 100.
-  std::int32_t substeps = 4;
-  /// For how many steps a contact that came apart keeps its impulses.
-  std::uint32_t collisionPersistence = 3;
-  /// m/s^2
-  Vector<S> gravity{};
-  /// What is left of every velocity after one second without forces, in [0, 1].
-  S damping{1};
-  /// Sequential impulses: how far shapes may overlap without being pushed apart, m.
-  S collisionSlop = ratio<S>(1, 200);
-  /// Sequential impulses: what is left of an overlap after one second, in [0, 1].
-  S collisionBias = ratio<S>(1797010, 1000000000);
-  /// Soft step: how stiff contacts are, cycles per second; a sixth of the substep rate at the most.
-  S contactHertz{39};
-  /// Soft step: how strongly a contact's spring is damped; 1 is critical.
-  S contactDamping{10};
-  /// Soft step: the greatest speed at which an overlap is pushed apart, m/s.
-  S contactPushSpeed{3};
-  /// Soft step: shapes this close are solved before they touch, m.
-  S contactMargin = ratio<S>(1, 50);
-  /// Soft step: slower impacts do not bounce, m/s.
-  S bounceThreshold{1};
-  /// Bodies are held within this distance of the origin along each axis, m.
-  S worldExtent = kDefaultWorldExtent<S>;
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("solver", self.solver);
-    visit("precision", self.precision);
-    visit("iterations", self.iterations);
-    visit("substeps", self.substeps);
-    visit("collisionPersistence", self.collisionPersistence);
-    visit("gravity", self.gravity);
-    visit("damping", self.damping);
-    visit("collisionSlop", self.collisionSlop);
-    visit("collisionBias", self.collisionBias);
-    visit("contactHertz", self.contactHertz);
-    visit("contactDamping", self.contactDamping);
-    visit("contactPushSpeed", self.contactPushSpeed);
-    visit("contactMargin", self.contactMargin);
-    visit("bounceThreshold", self.bounceThreshold);
-    visit("worldExtent", self.worldExtent);
-  }
-};
-
-/// What a collision handler does. A null function does what the wildcard handlers of both shapes do, or
-/// nothing. begin and preSolve answer whether the shapes shall collide: begin for as long as they touch,
-/// preSolve for this step.
+struct SpaceParts;
 template <Scalar S>
-struct CollisionHandler {
-  bool (*begin)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
-  bool (*preSolve)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
-  void (*postSolve)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
-  void (*separate)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
-  void* data = nullptr;
-};
-
-/// Which collisions a handler is for, and the number its functions are registered under.
-struct HandlerBinding {
-  enum class Kind : std::uint8_t { pair = 0, wildcard = 1, fallback = 2 };
-  CollisionType typeA = 0;
-  CollisionType typeB = 0;
-  CallbackNumber number = 0;
-  Kind kind = Kind::pair;
-  std::uint8_t unused[3] = {};
-
-  template <class Self, class Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("typeA", self.typeA);
-    visit("typeB", self.typeB);
-    visit("number", self.number);
-    visit("kind", self.kind);
-  }
-};
-
-/// A value that had to be held at its limit during the last step.
-struct RangeEvent {
-  BodyId body;
-  std::uint8_t held = 0;  ///< Bits of Body::Held.
-};
-
-/// The stages of a step, in their order.
-enum class Stage : std::uint8_t {
-  integratePositions,
-  updateShapes,
-  findPairs,
-  collide,
-  preStep,
-  integrateVelocities,
-  solve,
-  callbacks,
-};
-const char* stageName(Stage stage);
-
-/// Everything the future of a world depends on: hashed, saved, portable.
-template <Scalar S>
-struct WorldState {
-  Settings<S> settings{};
-  /// Steps made so far.
-  std::uint64_t stamp = 0;
-  /// Seconds of the last step; 0 before the first.
-  S timeStep{};
-  BodyId staticBody{};
-  /// Bodies of every type. MIS: spaceArrayForBodyType
-  SlotMap<Body<S>, BodyId> bodies;
-  SlotMap<Shape<S>, ShapeId> shapes;
-  /// Sorted by (a, b).
-  std::vector<Pair<S>> pairs;
-  /// Sorted by (kind, typeA, typeB).
-  std::vector<HandlerBinding> handlers;
-};
-
-template <Scalar S>
-struct SpaceCache;
-
-/// A world kept in memory, by Space::save, with what its Space had computed from it. Reusing one makes saving
-/// free of allocation.
-template <Scalar S>
-class SavedSpace {
- public:
-  SavedSpace();
-  SavedSpace(const SavedSpace& other);
-  SavedSpace(SavedSpace&& other) noexcept;
-  SavedSpace& operator=(const SavedSpace& other);
-  SavedSpace& operator=(SavedSpace&& other) noexcept;
-  ~SavedSpace();
-
-  /// The step it was saved after.
-  std::uint64_t stamp() const { return state_.stamp; }
-  const WorldState<S>& state() const { return state_; }
-  /// How much memory it copies, bytes.
-  std::uint64_t bytes() const;
-
- private:
-  friend class Space<S>;
-  WorldState<S> state_;
-  SpaceCache<S>* cache_;  ///< Null only after a move.
-};
-
-/// A point query's answer.
-template <Scalar S>
-struct PointHit {
-  ShapeId shape{};
-  Vector<S> point{};     ///< Nearest point of the shape's surface, m.
-  S distance{};          ///< From the surface, m; negative inside.
-  Vector<S> gradient{};  ///< Unit vector in which the distance grows.
-};
-
-/// A segment query's answer.
-template <Scalar S>
-struct SegmentHit {
-  ShapeId shape{};
-  Vector<S> point{};   ///< Where it hits, m.
-  Vector<S> normal{};  ///< Of the surface hit, a unit vector.
-  S alpha{};           ///< How far along the segment, in [0, 1].
-};
+struct StepContext;
 
 /// A world: bodies, shapes and their collisions, stepped in equal steps. MIS section 6.
 ///
@@ -214,10 +38,10 @@ struct SegmentHit {
 template <Scalar S>
 class Space {
  public:
-  using PositionFunc = void (*)(Body<S>& body, S dt, void* data);
-  using VelocityFunc = void (*)(Body<S>& body, const Vector<S>& gravity, S damping, S dt, void* data);
+  using PositionFunc = BodyPositionFunc<S>;
+  using VelocityFunc = BodyVelocityFunc<S>;
   using PostStepFunc = void (*)(Space& space, std::uint64_t key, void* data);
-  using StageObserver = void (*)(const Space& space, Stage stage, void* data);
+  using StageObserver = StageObserverFunc<S>;
 
   /// An empty world with one static body. MIS: spaceNew, spaceInit
   Space();
@@ -398,13 +222,10 @@ class Space {
   /// Calls visit(Arbiter<S>&) for each touching pair of shapes, by rising ids. Locks the Space.
   template <class Visit>
   void eachArbiter(Visit&& visit) {
-    LockGuard guard(*this);
-    for (Pair<S>& pair : state_.pairs) {
-      if (!touching(pair)) continue;
-      Arbiter<S> arbiter = arbiterOf(pair);
-      visit(arbiter);
-    }
-    guard.finish();
+    visitArbiters(
+        nullptr,
+        [](Arbiter<S>& arbiter, void* to) { (*static_cast<std::remove_reference_t<Visit>*>(to))(arbiter); },
+        const_cast<void*>(static_cast<const void*>(&visit)));
   }
   /// The same for those of one body, which is each arbiter's A or B as its ids say. O(its pairs) after the
   /// first call of a step.
@@ -412,14 +233,10 @@ class Space {
   /// MIS: bodyEachArbiter, arbiterNext, arbiterThreadForBody
   template <class Visit>
   void eachArbiter(BodyId id, Visit&& visit) {
-    const std::span<const std::uint32_t> thread = threadOf(id);
-    LockGuard guard(*this);
-    for (const std::uint32_t index : thread) {
-      if (!touching(state_.pairs[index])) continue;
-      Arbiter<S> arbiter = arbiterOf(state_.pairs[index]);
-      visit(arbiter);
-    }
-    guard.finish();
+    visitArbiters(
+        &id,
+        [](Arbiter<S>& arbiter, void* to) { (*static_cast<std::remove_reference_t<Visit>*>(to))(arbiter); },
+        const_cast<void*>(static_cast<const void*>(&visit)));
   }
 
   // Collision handlers. Functions are wiring, registered under a number; the binding of collision types to a
@@ -488,12 +305,12 @@ class Space {
   void unlock(bool runPostStep);
 
   /// What was held at its limit during the last step, by body id.
-  std::span<const RangeEvent> rangeEvents() const { return rangeEvents_; }
+  std::span<const RangeEvent> rangeEvents() const;
   /// Iteration limits reached and the like.
-  const CollisionStats& collisionStats() const { return collisionStats_; }
+  const CollisionStats& collisionStats() const;
   /// How many steps were to be fast but had numbers that do not fit, and were made accurately: see
   /// ContactPrecision. The same on every machine.
-  std::uint64_t accurateInstead() const { return accurateInstead_; }
+  std::uint64_t accurateInstead() const;
   /// Called after each stage of a step; nullptr for none, which costs nothing.
   void setStageObserver(StageObserver observer, void* data = nullptr);
 
@@ -525,8 +342,8 @@ class Space {
   /// The one in use.
   KernelTarget kernel() const;
   /// Who is told what the Space points out.
-  Remarks& remarks() { return remarks_; }
-  const Remarks& remarks() const { return remarks_; }
+  Remarks& remarks();
+  const Remarks& remarks() const;
 
   /// Moves the trees after a static body was moved by hand. The step does it by itself.
   /// @throws SpaceLocked
@@ -604,113 +421,23 @@ class Space {
    private:
     Space* space_;
   };
-  /// Exchanges A and B of an arbiter while it lives.
-  class TurnedRound {
-   public:
-    explicit TurnedRound(Arbiter<S>& arbiter) : arbiter_(arbiter) { turn(); }
-    ~TurnedRound() { turn(); }
-    TurnedRound(const TurnedRound&) = delete;
-    TurnedRound& operator=(const TurnedRound&) = delete;
-
-   private:
-    void turn() { arbiter_.swapped_ = !arbiter_.swapped_; }
-    Arbiter<S>& arbiter_;
-  };
-  struct Impl;
 
   void requireUnlocked() const;
+  StepContext<S> contextOf(S dt);
   std::uint32_t firstShape(BodyId id) const;
   std::uint32_t nextShape(std::uint32_t index) const;
-  std::span<const std::uint32_t> threadOf(BodyId id);
-  bool touching(const Pair<S>& pair) const;
-  bool rests(const Pair<S>& pair) const;
-  Arbiter<S> arbiterOf(Pair<S>& pair);
-
-  // The stages of a step, in their order.
-  void checkStep(S dt) const;
-  void integratePositions(S dt);
-  /// Places the shapes of what moved anew. MIS: shapeUpdateFunc
-  void updateShapes();
-  bool findPairs();
-  [[noreturn]] void refusePairs(S timeStepBefore);
-  void movePairs(std::uint32_t count);
-  void collidePairs();
-  bool collidePairs(std::uint32_t begin, std::uint32_t end, bool surfacesKnown, CollisionStats& stats);
-  /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
-  /// MIS: spaceArbiterSetFilter
-  void expirePairs();
-  void preStep(S dt);
-  void integrateVelocities(S dt);
-  void solve(S dtCoefficient);
-  void callPositionFunc(std::uint32_t index, S dt);
-  void callVelocityFunc(std::uint32_t index, S kept, S dt);
-  void softPreStep(S dt);
-  void softFindGroups();
-  void softTakeBodies(S dt);
-  void softTakePairs();
-  void softSolve();
-  void softFinish(S dt);
-  void softFinish(S dt, std::uint32_t begin, std::uint32_t end);
-  S pairMargin() const;
-  template <class Visit>
-  void eachSolvedPair(Visit&& visit);
-  void postSolve();
-  void listRangeEvents();
-  void endStage(Stage stage);
-
-  void ensureCache() const;
-  void placeShapesOf(std::uint32_t bodyIndex) const;
-  void placeAllShapes();
-  bool movePlaced(std::uint32_t bodyIndex) const;
-  void putBoxesOf(std::uint32_t bodyIndex) const;
-  void refreshTouched();
-  /// MIS: spaceCollideShapes
-  void collidePair(Pair<S>& pair, bool surfacesKnown, CollisionStats& stats);
-  /// Takes over a collision and asks the callbacks: whether the pair shall be solved. MIS: arbiterUpdate
-  bool applyCollision(Pair<S>& pair);
-  void forgetManifolds(ShapeId id);
-  void callSeparate(Pair<S>& pair, bool removal);
-  /// Forgets the pairs of a body or of a shape, which takes them out of every thread. MIS: arbiterUnthread
-  void dropPairs(BodyId body, ShapeId shape);
-  void eraseBody(BodyId id);
-  void eraseShape(ShapeId id);
-  /// Whether the filters and bodies of two shapes let them meet. MIS: queryReject
-  bool mayCollide(std::uint32_t a, std::uint32_t b) const;
-  bool askHandlers(Pair<S>& pair);
-  const CollisionHandler<S>* boundHandler(HandlerBinding::Kind kind, CollisionType typeA,
-                                          CollisionType typeB) const;
-  const CollisionHandler<S>* handlerFor(Arbiter<S>& arbiter) const;
-  const CollisionHandler<S>* wildcardFor(const Shape<S>& shape) const;
-  void requireCallbacks(const Body<S>& body) const;
-  template <class Collect>
-  void collectFound(Collect&& collect);
-  MassProperties<S> massOfShapes(BodyId id, std::uint32_t replaced, const Shape<S>* by) const;
-  bool anyShapeWeighs(BodyId id, std::uint32_t replaced, const Shape<S>* by) const;
-  void takeMass(BodyId id, std::uint32_t replaced, const Shape<S>* by);
-  void checkNew(const Body<S>& body) const;
-  void attach(BodyId id);
-  void insert(const Shape<S>& shape, ShapeId id);
-  void bind(const HandlerBinding& binding);
-  void checkAdoptable(const WorldState<S>& state) const;
-  void takeOver();
-  void checkShape(const Shape<S>& shape, const Body<S>& body) const;
+  /// Calls visit(arbiter, data) for each touching pair, or for those of one body. Locks the Space.
+  void visitArbiters(const BodyId* of, void (*visit)(Arbiter<S>&, void*), void* data);
 
   WorldState<S> state_;
-  Impl* impl_;
-  std::vector<RangeEvent> rangeEvents_;
-  CollisionStats collisionStats_{};
-  Remarks remarks_;
-  std::uint64_t accurateInstead_ = 0;
+  SpaceParts<S>* parts_;
   std::int32_t locked_ = 0;
 };
 
 #ifndef SAMESTEP_FIXED_ONLY
-extern template class SavedSpace<double>;
 extern template class Space<double>;
 #endif
-extern template class SavedSpace<Fixed>;
 extern template class Space<Fixed>;
-extern template class SavedSpace<CheckedFixed>;
 extern template class Space<CheckedFixed>;
 
 }  // namespace samestep

@@ -3,18 +3,15 @@
 
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <samestep/bb_tree.h>
-#include <samestep/space.h>
+#include <samestep/saved_world.h>
+#include <samestep/state.h>
 
 #include "contacts/push_contacts.h"
-#include "parallel/crew.h"
-#include "solver/sequential_impulse/sequential_impulse.h"
-#include "solver/soft_step/contact_groups.h"
-#include "solver/soft_step/soft_step.h"
 
 namespace samestep {
 
@@ -128,14 +125,22 @@ class LocalPlanes {
   std::uint32_t last_ = kNone;
 };
 
+/// The pairs of each body, as ranges of one list; made on demand.
+struct BodyPairs {
+  bool known = false;
+  std::vector<std::uint32_t> start;
+  std::vector<std::uint32_t> pairs;
+  std::vector<std::uint32_t> fill;
+};
+
 /// What a Space computes from its state and can compute again at any time, by body or shape slot. A saved
 /// world holds a copy, which spares the next step the work.
 template <Scalar S>
-struct SpaceCache {
-  SpaceCache() = default;
-  SpaceCache(const SpaceCache&) = delete;
-  SpaceCache& operator=(const SpaceCache&) = delete;
-  void copyFrom(const SpaceCache& other);
+struct Derived {
+  Derived() = default;
+  Derived(const Derived&) = delete;
+  Derived& operator=(const Derived&) = delete;
+  void copyFrom(const Derived& other);
   /// Bytes that copyFrom copies.
   std::uint64_t bytes() const;
 
@@ -166,170 +171,61 @@ struct SpaceCache {
   BBTree<S> staticTree;
   BBTree<S> dynamicTree{nullptr, nullptr, &staticTree};
 
-  void usePlanes();
-};
-
-/// What a Space has beside its state.
-template <Scalar S>
-struct Space<S>::Impl : SpaceCache<S> {
-  using SpaceCache<S>::poses, SpaceCache<S>::firstShape, SpaceCache<S>::lastShape, SpaceCache<S>::nextShape,
-      SpaceCache<S>::placed, SpaceCache<S>::planeOffset, SpaceCache<S>::planes, SpaceCache<S>::touched,
-      SpaceCache<S>::isTouched, SpaceCache<S>::planeRoom, SpaceCache<S>::traits, SpaceCache<S>::around,
-      SpaceCache<S>::staticTree, SpaceCache<S>::dynamicTree, SpaceCache<S>::localPlanes,
-      SpaceCache<S>::geometry, SpaceCache<S>::surfaces;
-
-  // Wiring: who is told. By rising number.
-  template <class Function>
-  struct Registered {
-    CallbackNumber number;
-    Function function;
-    void* data;
-  };
-  struct RegisteredHandler {
-    CallbackNumber number;
-    CollisionHandler<S> handler;
-  };
-  std::vector<Registered<PositionFunc>> positionFuncs;
-  std::vector<Registered<VelocityFunc>> velocityFuncs;
-  std::vector<RegisteredHandler> handlers;
-  StageObserver observer = nullptr;
-  void* observerData = nullptr;
-  std::uint32_t serial = 0;
-  TaskRunner* runner = nullptr;
-  Crew crew;
-  KernelTarget kernel = nextBestKernel(KernelTarget::best);
-  std::uint32_t maxPairs = kDefaultMaxPairs;
-  // How many times as many shapes may have boxes near each other as there may be pairs.
-  static constexpr std::uint64_t kCandidatesPerPair = 8;
-  /// Whether so many shapes can be more pairs than are allowed.
-  bool mayFindTooMany(std::uint64_t shapes) const { return shapes * shapes / 2 > maxPairs; }
-
-  struct PostStep {
-    PostStepFunc function;
-    std::uint64_t key;
-    void* data;
-  };
-  std::vector<PostStep> postStep;
-  bool runningPostStep = false;
-
-  // Cache, of one step.
-  bool keepPlaced = false;
-  // The pairs of each body, as ranges of threadPairs; made on demand.
-  bool threadsKnown = false;
-  std::vector<std::uint32_t> threadStart;
-  std::vector<std::uint32_t> threadPairs;
-  std::vector<std::uint32_t> threadFill;
-
-  // Scratch: of one step.
-  ImpulseSolver<S> solver;
-  SoftStep<S> soft;
-  ContactGroups groups;
-  struct SolvedPair {
-    std::uint32_t pair;
-    std::uint32_t a, b;
-    bool roundA, roundB;
-  };
-  std::vector<SolvedPair> solvedPairs;
-  std::vector<std::uint32_t> groupOrder;
-  std::vector<std::uint32_t> solverIndex;
-  std::vector<std::uint32_t> solverBodies;
-  // Of each pair: whether its boxes overlap; whether it touched before and does not now.
-  std::vector<std::uint8_t> overlapping;
-  std::vector<std::uint8_t> left;
-  struct NewPair {
-    std::uint32_t to;
-    std::uint32_t a, b;
-  };
-  std::vector<NewPair> newPairs;
-  // Pairs of the last step that all move by as much; some of them may be gone.
-  struct PairRun {
-    std::uint32_t from, end;
-    std::int64_t shift;
-  };
-  std::vector<PairRun> pairRuns;
-  bool someLeft = false;
-  std::vector<std::uint8_t> held;
-  SlotMap<Body<S>, BodyId> bodiesBefore;  // Of a step that may be refused midway.
-  std::vector<std::uint8_t> placedAnew;
-  std::vector<std::uint32_t> found;
-  std::vector<std::uint32_t> foundInOne;
-
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  // Of solverIndex: a body that touches nothing, by its place among them.
-  static constexpr std::uint32_t kFree = 0x80000000u;
-  // Fewer pairs, or bodies, are not worth waking other workers for.
-  static constexpr std::uint32_t kFewPairs = 256;
-  static constexpr std::uint32_t kFewBodies = 512;
-  // What a part of the work has at least.
-  static constexpr std::uint32_t kPairGrain = 32;
-  static constexpr std::uint32_t kPlacedGrain = 64;
 
-  template <class Entry>
-  static const Entry* find(const std::vector<Entry>& entries, CallbackNumber number) {
-    for (const Entry& entry : entries) {
-      if (entry.number == number) return &entry;
-    }
-    return nullptr;
+  // Of one step, and so in no copy.
+
+  /// Within a step queries see the shapes where it placed them, whatever callbacks have moved: a question
+  /// asked there must not change its result.
+  bool keepPlaced = false;
+  BodyPairs bodyPairs;
+
+  /// Computes all that was forgotten.
+  void ensure(const WorldState<S>& world);
+  /// Forgets everything. Changes no result.
+  void forget() {
+    cached = false;
+    bodyPairs.known = false;
   }
-  template <class Entry>
-  static void set(std::vector<Entry>& entries, const Entry& entry) {
-    for (Entry& present : entries) {
-      if (present.number == entry.number) {
-        present = entry;
-        return;
-      }
-    }
-    entries.push_back(entry);
+  /// Places the shapes of the bodies that may have been moved by hand.
+  void refresh(const WorldState<S>& world);
+  /// Places the shapes of a body, and moves their boxes if any moved.
+  void placeShapesOf(const WorldState<S>& world, std::uint32_t body) {
+    if (movePlaced(world, body)) putBoxesOf(world, body);
   }
+  /// Places the shapes of a body; false where they stand already. Writes to nothing but these.
+  bool movePlaced(const WorldState<S>& world, std::uint32_t body);
+  void putBoxesOf(const WorldState<S>& world, std::uint32_t body);
+  void dropBox(std::uint32_t shape);
 
-  std::uint32_t solverIndexOf(std::uint32_t body) {
-    std::uint32_t& index = solverIndex[body];
-    if (index == kNone) {
-      index = static_cast<std::uint32_t>(solverBodies.size());
-      solverBodies.push_back(body);
-    }
-    return index;
-  }
-  /// While it lives, queries see the shapes where the step placed them, whatever callbacks have moved: a
-  /// question asked within a step must not change its result.
-  class KeepPlaced {
-   public:
-    explicit KeepPlaced(Impl& impl) : impl_(impl) { impl_.keepPlaced = true; }
-    ~KeepPlaced() { end(); }
-    KeepPlaced(const KeepPlaced&) = delete;
-    KeepPlaced& operator=(const KeepPlaced&) = delete;
-    void end() { impl_.keepPlaced = false; }
-
-   private:
-    Impl& impl_;
-  };
-
-  void runPostStep(Space& space);
   void growBodies(std::uint32_t slots);
   void growShapes(std::uint32_t slots);
+  void linkShape(std::uint32_t body, std::uint32_t shape);
+  void unlinkShape(std::uint32_t body, std::uint32_t shape);
+  void prepareShape(std::uint32_t index, const Shape<S>& shape);
+  void takeTraits(std::uint32_t index, const Shape<S>& shape);
+
+  /// Notes that a body may have been moved by hand.
   void touch(std::uint32_t body);
   void touchAll(const WorldState<S>& world) {
     world.bodies.each([this](BodyId id, const Body<S>&) { touch(id.index); });
   }
   void forgetTouched();
+
+  /// The pairs of a body, by rising number. O(its pairs) after the first call of a step.
+  std::span<const std::uint32_t> pairsOf(const WorldState<S>& world, BodyId id);
+
+ private:
+  /// Points each placed shape to its planes.
+  void usePlanes();
   void putBox(std::uint32_t shape, bool isStatic, const BB<S>& box, const Vector<S>& velocity);
-  void dropBox(std::uint32_t shape);
-  void clearBoxes();
-  void linkShape(std::uint32_t body, std::uint32_t shape);
-  void unlinkShape(std::uint32_t body, std::uint32_t shape);
-  void prepareShape(std::uint32_t index, const Shape<S>& shape);
-  void takeTraits(std::uint32_t index, const Shape<S>& shape);
+  void findBodyPairs(const WorldState<S>& world);
 };
 
-/// One function of each further file that defines members of Space, for space.cpp to refer to. Under gcc's
-/// link-time optimisation what one of these files asks of another is a weak reference, since each
-/// instantiates the class; and a weak one alone takes no file out of a static library.
-namespace file_of {
-void spaceCache();
-void spaceHandlers();
-void spaceQuery();
-void spaceSoftStep();
-void spaceStep();
-}  // namespace file_of
+#ifndef SAMESTEP_FIXED_ONLY
+extern template struct Derived<double>;
+#endif
+extern template struct Derived<Fixed>;
+extern template struct Derived<CheckedFixed>;
 
 }  // namespace samestep

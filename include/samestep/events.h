@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/arbiter.h>
+#include <samestep/body.h>
+#include <samestep/id.h>
+
+namespace samestep {
+
+/// What a collision handler does. A null function does what the wildcard handlers of both shapes do, or
+/// nothing. begin and preSolve answer whether the shapes shall collide: begin for as long as they touch,
+/// preSolve for this step.
+template <Scalar S>
+struct CollisionHandler {
+  bool (*begin)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
+  bool (*preSolve)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
+  void (*postSolve)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
+  void (*separate)(Arbiter<S>&, Space<S>&, void* data) = nullptr;
+  void* data = nullptr;
+};
+
+/// What moves a body in place of its velocity. MIS: bodySetPositionFunc
+template <Scalar S>
+using BodyPositionFunc = void (*)(Body<S>& body, S dt, void* data);
+/// What changes a body's velocity in place of gravity, force and torque. MIS: bodySetVelocityFunc
+template <Scalar S>
+using BodyVelocityFunc = void (*)(Body<S>& body, const Vector<S>& gravity, S damping, S dt, void* data);
+
+/// A value that had to be held at its limit during the last step.
+struct RangeEvent {
+  BodyId body;
+  std::uint8_t held = 0;  ///< Bits of Body::Held.
+};
+
+/// The stages of a step. Sequential impulses make them in this order; the soft step integrates velocities
+/// while it solves, and positions after that, and so places the shapes last.
+enum class Stage : std::uint8_t {
+  integratePositions,
+  updateShapes,
+  findPairs,
+  collide,
+  preStep,
+  integrateVelocities,
+  solve,
+  callbacks,
+};
+const char* stageName(Stage stage);
+
+/// Called after each stage of a step.
+template <Scalar S>
+using StageObserverFunc = void (*)(const Space<S>& space, Stage stage, void* data);
+
+}  // namespace samestep

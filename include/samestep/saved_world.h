@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/state.h>
+
+namespace samestep {
+
+/// What a Space computes from its state and can compute again.
+template <Scalar S>
+struct Derived;
+
+/// A world kept in memory, by Space::save, with what its Space had computed from it. Reusing one makes saving
+/// free of allocation.
+template <Scalar S>
+class SavedSpace {
+ public:
+  SavedSpace();
+  SavedSpace(const SavedSpace& other);
+  SavedSpace(SavedSpace&& other) noexcept;
+  SavedSpace& operator=(const SavedSpace& other);
+  SavedSpace& operator=(SavedSpace&& other) noexcept;
+  ~SavedSpace();
+
+  /// The step it was saved after.
+  std::uint64_t stamp() const { return state_.stamp; }
+  const WorldState<S>& state() const { return state_; }
+  /// How much memory it copies, bytes.
+  std::uint64_t bytes() const;
+
+ private:
+  friend class Space<S>;
+  WorldState<S> state_;
+  Derived<S>* derived_;  ///< Null only after a move.
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class SavedSpace<double>;
+#endif
+extern template class SavedSpace<Fixed>;
+extern template class SavedSpace<CheckedFixed>;
+
+}  // namespace samestep

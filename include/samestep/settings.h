@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/limits.h>
+#include <samestep/vector.h>
+
+namespace samestep {
+
+/// How contacts are solved.
+enum class SolverKind : std::uint8_t {
+  /// As the MIS and Chipmunk: `iterations` passes over all contacts for the speeds, with bias velocities that
+  /// push overlaps apart. Fits few contacts, and what must behave like Chipmunk.
+  sequentialImpulses = 0,
+  /// `substeps` small steps with soft contacts and relaxation: for equal work far more accurate in piles and
+  /// stacks.
+  softStep = 1,
+};
+
+/// What the soft step computes contacts with, where the scalar leaves a choice.
+enum class ContactPrecision : std::uint8_t {
+  /// To the unit of the scalar.
+  accurate = 0,
+  /// Fixed: in integers of 32 bits, more at a time: the accuracy of a float, relative to the fastest body
+  /// that touches anything and to the largest impulse. A step in which a number would not fit is made
+  /// accurately, see Space::accurateInstead. Double: no difference.
+  fast = 1,
+};
+
+/// What the MIS calls the state variables of a Space that a user sets, and those of the soft step.
+template <Scalar S>
+struct Settings {
+  SolverKind solver = SolverKind::softStep;
+  ContactPrecision precision = ContactPrecision::accurate;
+  std::uint8_t unused[2] = {};
+  /// Sequential impulses: how often all contacts are solved in a step, 1 to 1000.
+  std::int32_t iterations = 10;
+  /// Soft step: how many substeps a step has, 1 to 100.
+  std::int32_t substeps = 4;
+  /// For how many steps a contact that came apart keeps its impulses.
+  std::uint32_t collisionPersistence = 3;
+  /// m/s^2
+  Vector<S> gravity{};
+  /// What is left of every velocity after one second without forces, in [0, 1].
+  S damping{1};
+  /// Sequential impulses: how far shapes may overlap without being pushed apart, m.
+  S collisionSlop = ratio<S>(1, 200);
+  /// Sequential impulses: what is left of an overlap after one second, in [0, 1].
+  S collisionBias = ratio<S>(1797010, 1000000000);
+  /// Soft step: how stiff contacts are, cycles per second; a sixth of the substep rate at the most.
+  S contactHertz{39};
+  /// Soft step: how strongly a contact's spring is damped; 1 is critical.
+  S contactDamping{10};
+  /// Soft step: the greatest speed at which an overlap is pushed apart, m/s.
+  S contactPushSpeed{3};
+  /// Soft step: shapes this close are solved before they touch, m.
+  S contactMargin = ratio<S>(1, 50);
+  /// Soft step: slower impacts do not bounce, m/s.
+  S bounceThreshold{1};
+  /// Bodies are held within this distance of the origin along each axis, m.
+  S worldExtent = kDefaultWorldExtent<S>;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("solver", self.solver);
+    visit("precision", self.precision);
+    visit("iterations", self.iterations);
+    visit("substeps", self.substeps);
+    visit("collisionPersistence", self.collisionPersistence);
+    visit("gravity", self.gravity);
+    visit("damping", self.damping);
+    visit("collisionSlop", self.collisionSlop);
+    visit("collisionBias", self.collisionBias);
+    visit("contactHertz", self.contactHertz);
+    visit("contactDamping", self.contactDamping);
+    visit("contactPushSpeed", self.contactPushSpeed);
+    visit("contactMargin", self.contactMargin);
+    visit("bounceThreshold", self.bounceThreshold);
+    visit("worldExtent", self.worldExtent);
+  }
+};
+
+}  // namespace samestep

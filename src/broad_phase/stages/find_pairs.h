@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "context/step_context.h"
+
+namespace samestep {
+
+/// The stage that finds the pairs of shapes whose boxes are near each other. Candidates of the trees and
+/// pairs are sorted alike and walked side by side. Where a pair goes is known before any is moved, so that
+/// none moves twice, and none at all in a world at rest.
+template <Scalar S>
+class FindPairs {
+ public:
+  /// Refuses the step where there would be too many: pairs are as before then.
+  void run(StepContext<S>& step);
+  /// Of each pair, after run: whether its boxes overlap.
+  const std::vector<std::uint8_t>& overlapping() const { return overlapping_; }
+  /// Whether so many shapes can be more pairs than are allowed.
+  static bool mayFindTooMany(const StepContext<S>& step) {
+    const std::uint64_t shapes = step.state.shapes.size();
+    return shapes * shapes / 2 > step.wiring.maxPairs;
+  }
+
+ private:
+  // How many times as many shapes may have boxes near each other as there may be pairs.
+  static constexpr std::uint64_t kCandidatesPerPair = 8;
+
+  struct NewPair {
+    std::uint32_t to;
+    std::uint32_t a, b;
+  };
+  // Pairs of the last step that all move by as much; some of them may be gone.
+  struct PairRun {
+    std::uint32_t from, end;
+    std::int64_t shift;
+  };
+
+  bool findCandidates(StepContext<S>& step);
+  std::uint32_t mergePairs(StepContext<S>& step);
+  void movePairs(WorldState<S>& state, std::uint32_t count);
+
+  std::vector<std::uint8_t> overlapping_;
+  std::vector<NewPair> newPairs_;
+  std::vector<PairRun> pairRuns_;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class FindPairs<double>;
+#endif
+extern template class FindPairs<Fixed>;
+extern template class FindPairs<CheckedFixed>;
+
+}  // namespace samestep

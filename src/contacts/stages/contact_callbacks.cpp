@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "contacts/stages/contact_callbacks.h"
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+
+template <Scalar S>
+Arbiter<S> ContactCallbacks<S>::arbiterOf(Context& context, Pair<S>& pair) {
+  // Its setters are for one step.
+  context.derived.surfacesKnown = false;
+  const Shape<S>& shapeA = context.state.shapes.valueAt(pair.a.index);
+  const Shape<S>& shapeB = context.state.shapes.valueAt(pair.b.index);
+  return {pair, context.state.bodies.valueAt(shapeA.body().index),
+          context.state.bodies.valueAt(shapeB.body().index), shapeA, shapeB};
+}
+
+/// The handler bound to a pair of types in this order, to a type, or to all; null if none is.
+template <Scalar S>
+const CollisionHandler<S>* ContactCallbacks<S>::boundHandler(const Context& context,
+                                                             HandlerBinding::Kind kind, CollisionType typeA,
+                                                             CollisionType typeB) {
+  for (const HandlerBinding& binding : context.state.handlers) {
+    if (binding.kind == kind && binding.typeA == typeA && binding.typeB == typeB) {
+      const auto* entry = Wiring<S>::find(context.wiring.handlers, binding.number);
+      return entry == nullptr ? nullptr : &entry->handler;
+    }
+  }
+  return nullptr;
+}
+
+/// Finds who answers for an arbiter and turns it round where the handler's types say so. Null: the wildcards.
+template <Scalar S>
+const CollisionHandler<S>* ContactCallbacks<S>::handlerFor(const Context& context, Arbiter<S>& arbiter) {
+  using Kind = HandlerBinding::Kind;
+  const CollisionType a = arbiter.shapeDataA().collisionType();
+  const CollisionType b = arbiter.shapeDataB().collisionType();
+  if (const auto* handler = boundHandler(context, Kind::pair, a, b)) return handler;
+  if (const auto* handler = boundHandler(context, Kind::pair, b, a)) {
+    arbiter.swapped_ = !arbiter.swapped_;
+    return handler;
+  }
+  return boundHandler(context, Kind::fallback, kWildcardCollisionType, kWildcardCollisionType);
+}
+
+template <Scalar S>
+const CollisionHandler<S>* ContactCallbacks<S>::wildcardFor(const Context& context, const Shape<S>& shape) {
+  return boundHandler(context, HandlerBinding::Kind::wildcard, shape.collisionType(), kWildcardCollisionType);
+}
+
+template <Scalar S>
+bool ContactCallbacks<S>::wildcardBegin(Context& context, Arbiter<S>& arbiter, bool ofB) {
+  const TurnedRound turned(arbiter, ofB);
+  const auto* handler = wildcardFor(context, arbiter.shapeDataA());
+  return handler == nullptr || handler->begin == nullptr ||
+         handler->begin(arbiter, context.space, handler->data);
+}
+
+template <Scalar S>
+bool ContactCallbacks<S>::wildcardPreSolve(Context& context, Arbiter<S>& arbiter, bool ofB) {
+  const TurnedRound turned(arbiter, ofB);
+  const auto* handler = wildcardFor(context, arbiter.shapeDataA());
+  return handler == nullptr || handler->preSolve == nullptr ||
+         handler->preSolve(arbiter, context.space, handler->data);
+}
+
+template <Scalar S>
+void ContactCallbacks<S>::wildcardPostSolve(Context& context, Arbiter<S>& arbiter, bool ofB) {
+  const TurnedRound turned(arbiter, ofB);
+  const auto* handler = wildcardFor(context, arbiter.shapeDataA());
+  if (handler != nullptr && handler->postSolve != nullptr) {
+    handler->postSolve(arbiter, context.space, handler->data);
+  }
+}
+
+template <Scalar S>
+void ContactCallbacks<S>::wildcardSeparate(Context& context, Arbiter<S>& arbiter, bool ofB) {
+  const TurnedRound turned(arbiter, ofB);
+  const auto* handler = wildcardFor(context, arbiter.shapeDataA());
+  if (handler != nullptr && handler->separate != nullptr) {
+    handler->separate(arbiter, context.space, handler->data);
+  }
+}
+
+template <Scalar S>
+bool ContactCallbacks<S>::ask(Context& context, Pair<S>& pair) {
+  Arbiter<S> arbiter = arbiterOf(context, pair);
+  const CollisionHandler<S>* handler = handlerFor(context, arbiter);
+  // Both wildcards are asked, whatever the first one says.
+  const auto begin = [&] {
+    if (handler != nullptr && handler->begin != nullptr)
+      return handler->begin(arbiter, context.space, handler->data);
+    const bool a = wildcardBegin(context, arbiter, false);
+    const bool b = wildcardBegin(context, arbiter, true);
+    return a && b;
+  };
+  const auto preSolve = [&] {
+    if (handler != nullptr && handler->preSolve != nullptr) {
+      return handler->preSolve(arbiter, context.space, handler->data);
+    }
+    const bool a = wildcardPreSolve(context, arbiter, false);
+    const bool b = wildcardPreSolve(context, arbiter, true);
+    return a && b;
+  };
+  if (pair.state == ArbiterState::firstCollision && !begin()) arbiter.ignore();
+  return pair.state != ArbiterState::ignored && preSolve() && pair.state != ArbiterState::ignored;
+}
+
+template <Scalar S>
+void ContactCallbacks<S>::separate(Context& context, Pair<S>& pair, bool removal) {
+  if (context.state.handlers.empty()) return;
+  Arbiter<S> arbiter = arbiterOf(context, pair);
+  arbiter.removal_ = removal;
+  const CollisionHandler<S>* handler = handlerFor(context, arbiter);
+  if (handler != nullptr && handler->separate != nullptr) {
+    handler->separate(arbiter, context.space, handler->data);
+  } else {
+    wildcardSeparate(context, arbiter, false);
+    wildcardSeparate(context, arbiter, true);
+  }
+}
+
+template <Scalar S>
+void ContactCallbacks<S>::postSolve(Context& context) {
+  if (context.state.handlers.empty()) return;
+  for (Pair<S>& pair : context.state.pairs) {
+    if (pair.solved == 0) continue;
+    Arbiter<S> arbiter = arbiterOf(context, pair);
+    const CollisionHandler<S>* handler = handlerFor(context, arbiter);
+    if (handler != nullptr && handler->postSolve != nullptr) {
+      handler->postSolve(arbiter, context.space, handler->data);
+    } else {
+      wildcardPostSolve(context, arbiter, false);
+      wildcardPostSolve(context, arbiter, true);
+    }
+  }
+}
+
+template <Scalar S>
+void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape) {
+  const auto meant = [&](const Pair<S>& pair) {
+    const auto is = [&](ShapeId id) {
+      return shape.valid() ? id == shape : context.state.shapes.valueAt(id.index).body() == body;
+    };
+    return is(pair.a) || is(pair.b);
+  };
+  for (Pair<S>& pair : context.state.pairs) {
+    if (!meant(pair) || pair.state == ArbiterState::apart || pair.state == ArbiterState::cached) continue;
+    pair.state = ArbiterState::cached;
+    separate(context, pair, true);
+  }
+  std::erase_if(context.state.pairs, meant);
+  context.derived.bodyPairs.known = false;
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template struct ContactCallbacks<double>;
+#endif
+template struct ContactCallbacks<Fixed>;
+template struct ContactCallbacks<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "context/step_context.h"
+
+namespace samestep {
+
+/// Who is told of collisions: handlers of a pair of types, else the wildcards of both.
+template <Scalar S>
+struct ContactCallbacks {
+  using Context = StepContext<S>;
+
+  static bool touching(const Pair<S>& pair) {
+    return pair.count > 0 && pair.age == 0 &&
+           (pair.state == ArbiterState::firstCollision || pair.state == ArbiterState::normal);
+  }
+  static Arbiter<S> arbiterOf(Context& context, Pair<S>& pair);
+  /// Calls begin for a first contact, then preSolve; whether the pair is to be solved.
+  static bool ask(Context& context, Pair<S>& pair);
+  static void separate(Context& context, Pair<S>& pair, bool removal);
+  /// Calls postSolve for all pairs that were solved.
+  static void postSolve(Context& context);
+  /// Forgets the pairs of a body or of a shape, as if it had never touched anything; separate is called. The
+  /// Space is locked: what the callbacks want to add or remove has to wait. MIS: arbiterUnthread
+  static void dropPairs(Context& context, BodyId body, ShapeId shape);
+
+  // What the wildcard handler of the arbiter's A says; with `ofB` that of its B, which sees its own shape as
+  // A.
+  static bool wildcardBegin(Context& context, Arbiter<S>& arbiter, bool ofB);
+  static bool wildcardPreSolve(Context& context, Arbiter<S>& arbiter, bool ofB);
+  static void wildcardPostSolve(Context& context, Arbiter<S>& arbiter, bool ofB);
+  static void wildcardSeparate(Context& context, Arbiter<S>& arbiter, bool ofB);
+
+ private:
+  /// Exchanges A and B of an arbiter while it lives, if it is to.
+  class TurnedRound {
+   public:
+    TurnedRound(Arbiter<S>& arbiter, bool turned) : arbiter_(arbiter), turned_(turned) { turn(); }
+    ~TurnedRound() { turn(); }
+    TurnedRound(const TurnedRound&) = delete;
+    TurnedRound& operator=(const TurnedRound&) = delete;
+
+   private:
+    void turn() { arbiter_.swapped_ = arbiter_.swapped_ != turned_; }
+    Arbiter<S>& arbiter_;
+    bool turned_;
+  };
+
+  static const CollisionHandler<S>* boundHandler(const Context& context, HandlerBinding::Kind kind,
+                                                 CollisionType typeA, CollisionType typeB);
+  static const CollisionHandler<S>* handlerFor(const Context& context, Arbiter<S>& arbiter);
+  static const CollisionHandler<S>* wildcardFor(const Context& context, const Shape<S>& shape);
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template struct ContactCallbacks<double>;
+#endif
+extern template struct ContactCallbacks<Fixed>;
+extern template struct ContactCallbacks<CheckedFixed>;
+
+}  // namespace samestep

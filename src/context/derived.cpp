@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT
+#include "context/derived.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+
+template <Scalar S>
+void LocalPlanes<S>::clear() {
+  planes_.clear();
+  geometries_.clear();
+  firstFree_.assign(kMaxPolyVertices + 1, kNone);
+  last_ = kNone;
+}
+
+template <Scalar S>
+std::uint32_t LocalPlanes<S>::use(const Plane<S>* planes, std::uint32_t count) {
+  static_assert(std::is_trivially_copyable_v<Plane<S>>);
+  // By bits: zeros of two signs are equal, and not the same.
+  const bool same = last_ != kNone && geometries_[last_].count == count && geometries_[last_].users != 0 &&
+                    std::memcmp(of(last_), planes, count * sizeof(Plane<S>)) == 0;
+  if (same) {
+    ++geometries_[last_].users;
+    return last_;
+  }
+  last_ = firstFree_[count];
+  if (last_ == kNone) {
+    last_ = static_cast<std::uint32_t>(geometries_.size());
+    geometries_.push_back({static_cast<std::uint32_t>(planes_.size()), count, 1, kNone});
+    planes_.insert(planes_.end(), planes, planes + count);
+  } else {
+    Geometry& again = geometries_[last_];
+    firstFree_[count] = again.nextFree;
+    again.users = 1;
+    std::copy(planes, planes + count, planes_.begin() + again.offset);
+  }
+  return last_;
+}
+
+template <Scalar S>
+void LocalPlanes<S>::release(std::uint32_t geometry) {
+  if (geometry == kNone || --geometries_[geometry].users != 0) return;
+  Geometry& unused = geometries_[geometry];
+  unused.nextFree = firstFree_[unused.count];
+  firstFree_[unused.count] = geometry;
+}
+
+template <Scalar S>
+void Derived<S>::copyFrom(const Derived& other) {
+  cached = other.cached;
+  shapesHashKnown = other.shapesHashKnown;
+  shapesHash = other.shapesHash;
+  if (!cached) return;
+  poses = other.poses;
+  firstShape = other.firstShape;
+  lastShape = other.lastShape;
+  nextShape = other.nextShape;
+  placed = other.placed;
+  traits = other.traits;
+  around = other.around;
+  surfaces = other.surfaces;
+  surfacesKnown = other.surfacesKnown;
+  leftMidway = other.leftMidway;
+  planeOffset = other.planeOffset;
+  planes = other.planes;
+  localPlanes = other.localPlanes;
+  geometry = other.geometry;
+  touched = other.touched;
+  isTouched = other.isTouched;
+  planeRoom = other.planeRoom;
+  staticTree.copyFrom(other.staticTree);
+  dynamicTree.copyFrom(other.dynamicTree);
+  usePlanes();
+}
+
+template <Scalar S>
+void Derived<S>::usePlanes() {
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    placed[i].planes = planes.data() + planeOffset[i];
+    placed[i].local = geometry[i] == LocalPlanes<S>::kNone ? nullptr : localPlanes.of(geometry[i]);
+  }
+}
+
+template <Scalar S>
+std::uint64_t Derived<S>::bytes() const {
+  const auto of = [](const auto&... list) {
+    return (std::uint64_t{0} + ... + (list.size() * sizeof(list[0])));
+  };
+  if (!cached) return 0;
+  return of(poses, firstShape, lastShape, nextShape, placed, traits, around, planeOffset, planes, touched,
+            isTouched, planeRoom, geometry) +
+         localPlanes.bytes() + surfaces.bytes() + staticTree.bytes() + dynamicTree.bytes();
+}
+
+template <Scalar S>
+void Derived<S>::growBodies(std::uint32_t slots) {
+  poses.resize(slots);
+  firstShape.resize(slots, kNone);
+  lastShape.resize(slots, kNone);
+  isTouched.resize(slots, 0);
+}
+
+template <Scalar S>
+void Derived<S>::growShapes(std::uint32_t slots) {
+  nextShape.resize(slots, kNone);
+  placed.resize(slots);
+  traits.resize(slots);
+  around.resize(slots);
+  planeOffset.resize(slots, 0);
+  planeRoom.resize(slots, 0);
+  geometry.resize(slots, kNone);
+}
+
+template <Scalar S>
+void Derived<S>::touch(std::uint32_t body) {
+  if (body >= isTouched.size() || isTouched[body] != 0) return;
+  isTouched[body] = 1;
+  touched.push_back(body);
+}
+
+template <Scalar S>
+void Derived<S>::forgetTouched() {
+  for (const std::uint32_t body : touched) isTouched[body] = 0;
+  touched.clear();
+}
+
+template <Scalar S>
+void Derived<S>::linkShape(std::uint32_t body, std::uint32_t shape) {
+  // By rising slot. A new shape nearly always has the highest one.
+  std::uint32_t before = lastShape[body];
+  if (before != kNone && before > shape) {
+    before = kNone;
+    for (std::uint32_t i = firstShape[body]; i != kNone && i < shape; i = nextShape[i]) before = i;
+  }
+  std::uint32_t& link = before == kNone ? firstShape[body] : nextShape[before];
+  nextShape[shape] = link;
+  link = shape;
+  if (nextShape[shape] == kNone) lastShape[body] = shape;
+}
+
+template <Scalar S>
+void Derived<S>::unlinkShape(std::uint32_t body, std::uint32_t shape) {
+  std::uint32_t before = kNone;
+  for (std::uint32_t i = firstShape[body]; i != shape; i = nextShape[i]) before = i;
+  (before == kNone ? firstShape[body] : nextShape[before]) = nextShape[shape];
+  if (lastShape[body] == shape) lastShape[body] = before;
+  nextShape[shape] = kNone;
+}
+
+template <Scalar S>
+void Derived<S>::prepareShape(std::uint32_t index, const Shape<S>& shape) {
+  const std::uint32_t count = static_cast<std::uint32_t>(planeCount(shape));
+  Plane<S> local[kMaxPolyVertices];
+  prepare(shape, local, placed[index]);
+  takeTraits(index, shape);
+  const Plane<S>* const before = planes.data();
+  const Plane<S>* const localBefore = localPlanes.data();
+  localPlanes.release(geometry[index]);
+  geometry[index] = localPlanes.use(local, count);
+  if (count > planeRoom[index]) {
+    planeOffset[index] = static_cast<std::uint32_t>(planes.size());
+    planeRoom[index] = count;
+    planes.resize(planes.size() + count);
+  }
+  if (planes.data() != before || localPlanes.data() != localBefore) usePlanes();
+  placed[index].planes = planes.data() + planeOffset[index];
+  placed[index].local = localPlanes.of(geometry[index]);
+}
+
+template <Scalar S>
+void Derived<S>::takeTraits(std::uint32_t index, const Shape<S>& shape) {
+  traits[index] = ShapeTraits<S>::of(shape, surfaces.number(Surface<S>::of(shape)));
+  around[index] = CircleAround<S>::of(shape);
+  if (!surfaces.tooMany(traits.size())) return;
+  // What shapes no longer have is forgotten.
+  Surfaces<S> anew;
+  for (ShapeTraits<S>& each : traits) each.surface = anew.number(surfaces[each.surface]);
+  surfaces = std::move(anew);
+}
+
+template <Scalar S>
+void Derived<S>::putBox(std::uint32_t shape, bool isStatic, const BB<S>& box, const Vector<S>& velocity) {
+  BBTree<S>& other = isStatic ? dynamicTree : staticTree;
+  if (other.contains(shape)) [[unlikely]]
+    other.remove(shape);
+  if (isStatic) {
+    staticTree.update(shape, box);
+  } else {
+    dynamicTree.update(shape, box, velocity);
+  }
+}
+
+template <Scalar S>
+void Derived<S>::dropBox(std::uint32_t shape) {
+  if (staticTree.contains(shape)) staticTree.remove(shape);
+  if (dynamicTree.contains(shape)) dynamicTree.remove(shape);
+}
+
+template <Scalar S>
+void Derived<S>::ensure(const WorldState<S>& world) {
+  if (cached) return;
+  poses.assign(world.bodies.slots(), {});
+  firstShape.assign(world.bodies.slots(), kNone);
+  lastShape.assign(world.bodies.slots(), kNone);
+  isTouched.assign(world.bodies.slots(), 0);
+  touched.clear();
+  nextShape.assign(world.shapes.slots(), kNone);
+  placed.assign(world.shapes.slots(), {});
+  traits.assign(world.shapes.slots(), {});
+  around.assign(world.shapes.slots(), {});
+  surfaces.clear();
+  surfacesKnown = false;
+  planeOffset.assign(world.shapes.slots(), 0);
+  planeRoom.assign(world.shapes.slots(), 0);
+  planes.clear();
+  localPlanes.clear();
+  geometry.assign(world.shapes.slots(), kNone);
+  staticTree.clear();
+  dynamicTree.clear();
+  world.shapes.each([&](ShapeId id, const Shape<S>& shape) {
+    linkShape(shape.body().index, id.index);
+    prepareShape(id.index, shape);
+  });
+  world.bodies.each([&](BodyId id, const Body<S>&) { touch(id.index); });
+  cached = true;
+}
+
+template <Scalar S>
+bool Derived<S>::movePlaced(const WorldState<S>& world, std::uint32_t bodyIndex) {
+  const Body<S>& holder = world.bodies.valueAt(bodyIndex);
+  const PlacedPose<S> pose = PlacedPose<S>::of(holder);
+  if (poses[bodyIndex] == pose) return false;
+  poses[bodyIndex] = pose;
+  if (firstShape[bodyIndex] == kNone) return false;
+  const Transform<S> transform = Transform<S>::rigid(pose.frame.origin, pose.frame.rotation);
+  for (std::uint32_t i = firstShape[bodyIndex]; i != kNone; i = nextShape[i]) {
+    place(transform, placed[i]);
+  }
+  return true;
+}
+
+template <Scalar S>
+void Derived<S>::putBoxesOf(const WorldState<S>& world, std::uint32_t bodyIndex) {
+  const Body<S>& holder = world.bodies.valueAt(bodyIndex);
+  const bool isStatic = holder.type() == BodyType::staticBody;
+  for (std::uint32_t i = firstShape[bodyIndex]; i != kNone; i = nextShape[i]) {
+    putBox(i, isStatic, placed[i].box, holder.velocity());
+  }
+}
+
+template <Scalar S>
+void Derived<S>::refresh(const WorldState<S>& world) {
+  ensure(world);
+  if (keepPlaced) return;
+  for (const std::uint32_t body : touched) {
+    if (world.bodies.aliveAt(body)) placeShapesOf(world, body);
+  }
+}
+
+template <Scalar S>
+void Derived<S>::findBodyPairs(const WorldState<S>& world) {
+  const std::uint32_t slots = world.bodies.slots();
+  std::vector<std::uint32_t>& start = bodyPairs.start;
+  start.assign(slots + 1, 0);
+  const auto eachEnd = [&](auto&& visit) {
+    for (std::uint32_t i = 0; i < world.pairs.size(); ++i) {
+      const Pair<S>& pair = world.pairs[i];
+      visit(world.shapes.valueAt(pair.a.index).body().index, i);
+      visit(world.shapes.valueAt(pair.b.index).body().index, i);
+    }
+  };
+  eachEnd([&](std::uint32_t body, std::uint32_t) { ++start[body + 1]; });
+  for (std::uint32_t body = 0; body < slots; ++body) start[body + 1] += start[body];
+  bodyPairs.pairs.resize(start[slots]);
+  bodyPairs.fill = start;
+  eachEnd([&](std::uint32_t body, std::uint32_t pair) { bodyPairs.pairs[bodyPairs.fill[body]++] = pair; });
+  bodyPairs.known = true;
+}
+
+template <Scalar S>
+std::span<const std::uint32_t> Derived<S>::pairsOf(const WorldState<S>& world, BodyId id) {
+  require<Fault::BodyNotFound>(world.bodies.contains(id));
+  if (!bodyPairs.known) findBodyPairs(world);
+  // A body added since then touches nothing yet.
+  if (id.index + 1 >= bodyPairs.start.size()) return {};
+  return {bodyPairs.pairs.data() + bodyPairs.start[id.index],
+          bodyPairs.pairs.data() + bodyPairs.start[id.index + 1]};
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class LocalPlanes<double>;
+#endif
+template class LocalPlanes<Fixed>;
+template class LocalPlanes<CheckedFixed>;
+#ifndef SAMESTEP_FIXED_ONLY
+template struct Derived<double>;
+#endif
+template struct Derived<Fixed>;
+template struct Derived<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/saved_world.h>
+
+#include <utility>
+
+#include "base/require_ieee.h"
+#include "context/derived.h"
+
+namespace samestep {
+
+template <Scalar S>
+SavedSpace<S>::SavedSpace() : derived_(new Derived<S>) {}
+
+template <Scalar S>
+SavedSpace<S>::SavedSpace(const SavedSpace& other) : SavedSpace() {
+  *this = other;
+}
+
+template <Scalar S>
+SavedSpace<S>::SavedSpace(SavedSpace&& other) noexcept
+    : state_(std::move(other.state_)), derived_(std::exchange(other.derived_, nullptr)) {}
+
+template <Scalar S>
+SavedSpace<S>& SavedSpace<S>::operator=(const SavedSpace& other) {
+  if (this == &other) return *this;
+  state_ = other.state_;
+  if (derived_ == nullptr) derived_ = new Derived<S>;
+  derived_->cached = false;
+  if (other.derived_ != nullptr) derived_->copyFrom(*other.derived_);
+  return *this;
+}
+
+template <Scalar S>
+SavedSpace<S>& SavedSpace<S>::operator=(SavedSpace&& other) noexcept {
+  std::swap(state_, other.state_);
+  std::swap(derived_, other.derived_);
+  return *this;
+}
+
+template <Scalar S>
+SavedSpace<S>::~SavedSpace() {
+  delete derived_;
+}
+
+template <Scalar S>
+std::uint64_t SavedSpace<S>::bytes() const {
+  const auto ofSlots = [](const auto& map) {
+    return map.values().size() * (sizeof(map.values()[0]) + sizeof(std::uint32_t));
+  };
+  return ofSlots(state_.bodies) + ofSlots(state_.shapes) + state_.pairs.size() * sizeof(Pair<S>) +
+         state_.handlers.size() * sizeof(HandlerBinding) + sizeof state_ +
+         (derived_ == nullptr ? 0 : derived_->bytes());
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class SavedSpace<double>;
+#endif
+template class SavedSpace<Fixed>;
+template class SavedSpace<CheckedFixed>;
+
+}  // namespace samestep

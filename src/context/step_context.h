@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/state.h>
+
+#include "context/derived.h"
+#include "context/step_events.h"
+#include "context/wiring.h"
+#include "parallel/crew.h"
+
+namespace samestep {
+
+/// What every stage of a step works on. A stage keeps what it needs for itself in a type of its own.
+template <Scalar S>
+struct StepContext {
+  Space<S>& space;  ///< For callbacks, which are handed it.
+  WorldState<S>& state;
+  Derived<S>& derived;
+  Wiring<S>& wiring;
+  Crew& team;
+  StepEvents<S>& events;
+  S dt{};        ///< Seconds of this step.
+  S dtBefore{};  ///< Of the one before; 0 in the first.
+  /// Set by a stage that finds more pairs than the Space may hold: the step ends there, as if it had not
+  /// begun.
+  bool refused = false;
+
+  // Fewer pairs, or bodies, are not worth waking other workers for.
+  static constexpr std::uint32_t kFewPairs = 256;
+  static constexpr std::uint32_t kFewBodies = 512;
+  // What a part of the work has at least.
+  static constexpr std::uint32_t kPairGrain = 32;
+  static constexpr std::uint32_t kBodyGrain = 64;
+
+  bool isSoft() const { return state.settings.solver == SolverKind::softStep; }
+  /// How far apart two boxes may be for their shapes to be a pair, m.
+  S pairMargin() const { return isSoft() ? state.settings.contactMargin : S(0); }
+  /// Whether both bodies of a pair are static: such a pair stays as it is.
+  bool rests(const Pair<S>& pair) const {
+    const auto isStatic = [&](ShapeId id) {
+      return state.bodies.valueAt(state.shapes.valueAt(id.index).body().index).type() == BodyType::staticBody;
+    };
+    return isStatic(pair.a) && isStatic(pair.b);
+  }
+};
+
+}  // namespace samestep

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include <samestep/body.h>
+
+namespace samestep {
+
+/// What a Space does with its bodies beyond their public functions: it owns them and moves them, held within
+/// their ranges where a setter would throw.
+template <Scalar S>
+struct BodyAccess {
+  using Motion = typename Body<S>::Motion;
+  using WithinStep = typename Body<S>::WithinStep;
+
+  static std::uint32_t owner(const Body<S>& body) { return body.owner_; }
+  static void attach(Body<S>& body, BodyId id, std::uint32_t owner) {
+    body.id_ = id;
+    body.owner_ = owner;
+  }
+  /// Why the body cannot be stepped, or nullptr.
+  static const char* cannotStep(const Body<S>& body) { return body.cannotStep(); }
+  static Motion accelerated(const Body<S>& body, const Vector<S>& gravity, S damping, S dt) {
+    return body.accelerated(gravity, damping, dt);
+  }
+  static Motion acceleration(const Body<S>& body, const Vector<S>& gravity) {
+    return body.acceleration(gravity);
+  }
+  static std::uint8_t holdVelocity(Body<S>& body, const Motion& motion) { return body.holdVelocity(motion); }
+  static std::uint8_t holdPosition(Body<S>& body, S dt, S extent) { return body.holdPosition(dt, extent); }
+  static std::uint8_t holdMoved(Body<S>& body, const Vector<S>& by, S angle, S extent) {
+    return body.holdMoved(by, angle, extent);
+  }
+  static void clearForces(Body<S>& body) {
+    body.force_ = {};
+    body.torque_ = S(0);
+  }
+  /// Of a body that is not dynamic: its mass is to be summed over its shapes when it becomes so.
+  static void forgetMass(Body<S>& body) { body.forgetMass(); }
+  static void forgetBias(Body<S>& body) { body.forgetBias(); }
+  static void setBias(Body<S>& body, const Vector<S>& velocity, S angularVelocity) {
+    body.velocityBias_ = velocity;
+    body.angularVelocityBias_ = angularVelocity;
+  }
+};
+
+}  // namespace samestep

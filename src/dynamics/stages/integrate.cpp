@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "dynamics/stages/integrate.h"
+
+#include "base/require_ieee.h"
+#include "dynamics/body_access.h"
+
+namespace samestep {
+
+template <Scalar S>
+void Integrate<S>::check(const StepContext<S>& step) {
+  const auto& bodies = step.state.bodies;
+  for (std::uint32_t i = 0; i < bodies.slots(); ++i) {
+    if (!bodies.aliveAt(i)) continue;
+    const Body<S>& body = bodies.valueAt(i);
+    const char* reason = BodyAccess<S>::cannotStep(body);
+    if (reason != nullptr) [[unlikely]]
+      fail<Fault::IllegalBody>(reason);
+    if (body.positionFunc() != 0 || body.velocityFunc() != 0) [[unlikely]]
+      step.wiring.requireCallbacks(body);
+  }
+}
+
+template <Scalar S>
+void Integrate<S>::callPositionFunc(StepContext<S>& step, std::uint32_t index) {
+  Body<S>& body = step.state.bodies.valueAt(index);
+  const auto* entry = Wiring<S>::find(step.wiring.positionFuncs, body.positionFunc());
+  {
+    const typename BodyAccess<S>::WithinStep within(body, step.events.held[index]);
+    entry->function(body, step.dt, entry->data);
+  }
+  step.events.held[index] |= BodyAccess<S>::holdPosition(body, S(0), step.state.settings.worldExtent);
+}
+
+template <Scalar S>
+void Integrate<S>::callVelocityFunc(StepContext<S>& step, std::uint32_t index, S kept) {
+  Body<S>& body = step.state.bodies.valueAt(index);
+  const auto* entry = Wiring<S>::find(step.wiring.velocityFuncs, body.velocityFunc());
+  {
+    const typename BodyAccess<S>::WithinStep within(body, step.events.held[index]);
+    entry->function(body, step.state.settings.gravity, kept, step.dt, entry->data);
+  }
+  step.derived.touch(index);
+}
+
+template <Scalar S>
+void Integrate<S>::positions(StepContext<S>& step) {
+  auto& bodies = step.state.bodies;
+  for (std::uint32_t i = 0; i < bodies.slots(); ++i) {
+    if (!bodies.aliveAt(i)) continue;
+    Body<S>& body = bodies.valueAt(i);
+    if (body.type() == BodyType::staticBody) continue;
+    if (body.positionFunc() != 0) [[unlikely]] {
+      callPositionFunc(step, i);
+    } else {
+      step.events.held[i] |= BodyAccess<S>::holdPosition(body, step.dt, step.state.settings.worldExtent);
+    }
+  }
+}
+
+template <Scalar S>
+void Integrate<S>::velocities(StepContext<S>& step) {
+  const S damping = step.state.settings.damping;
+  const S kept = damping == S(1) ? S(1) : pow(damping, step.dt);
+  const Vector<S> pull = step.state.settings.gravity;
+  auto& bodies = step.state.bodies;
+  for (std::uint32_t i = 0; i < bodies.slots(); ++i) {
+    if (!bodies.aliveAt(i)) continue;
+    Body<S>& body = bodies.valueAt(i);
+    if (body.type() == BodyType::staticBody) {
+      // Nothing moves it, and no function is asked to.
+    } else if (body.velocityFunc() != 0) [[unlikely]] {
+      callVelocityFunc(step, i, kept);
+    } else if (body.isDynamic()) {
+      step.events.held[i] |=
+          BodyAccess<S>::holdVelocity(body, BodyAccess<S>::accelerated(body, pull, kept, step.dt));
+    }
+    BodyAccess<S>::clearForces(body);
+  }
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template struct Integrate<double>;
+#endif
+template struct Integrate<Fixed>;
+template struct Integrate<CheckedFixed>;
+
+}  // namespace samestep

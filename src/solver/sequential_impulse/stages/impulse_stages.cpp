@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "solver/sequential_impulse/stages/impulse_stages.h"
+
+#include "base/require_ieee.h"
+#include "dynamics/body_access.h"
+
+namespace samestep {
+
+namespace {
+
+/// The largest part of an overlap that goes per second.
+template <Scalar S>
+inline constexpr S kMaxBiasRate = S(1 << 14);
+/// The largest factor by which a longer step enlarges the impulses kept from the last one.
+template <Scalar S>
+inline constexpr S kMaxStepRatio = S(1 << 10);
+
+template <Scalar S>
+S stepRatio(S dt, S before) {
+  return dt >= before * kMaxStepRatio<S> ? kMaxStepRatio<S> : dt / before;
+}
+
+}  // namespace
+
+template <Scalar S>
+std::uint32_t ImpulseStages<S>::solverIndexOf(std::uint32_t body) {
+  std::uint32_t& index = solverIndex_[body];
+  if (index == kNone) {
+    index = static_cast<std::uint32_t>(bodies_.size());
+    bodies_.push_back(body);
+  }
+  return index;
+}
+
+template <Scalar S>
+void ImpulseStages<S>::prepare(StepContext<S>& step) {
+  const auto& bodies = step.state.bodies;
+  const auto& shapes = step.state.shapes;
+  const S bias = step.state.settings.collisionBias, slop = step.state.settings.collisionSlop;
+  const S remaining = S(1) - pow(bias, step.dt);
+  const S biasRate = remaining > step.dt * kMaxBiasRate<S> ? kMaxBiasRate<S> : remaining / step.dt;
+  solver_.rows.clear();
+  solver_.bodies.clear();
+  bodies_.clear();
+  solverIndex_.assign(bodies.slots(), kNone);
+  for (const Pair<S>& pair : step.state.pairs) {
+    if (pair.solved == 0) continue;
+    const std::uint32_t a = shapes.valueAt(pair.a.index).body().index;
+    const std::uint32_t b = shapes.valueAt(pair.b.index).body().index;
+    const std::uint32_t solverA = solverIndexOf(a);
+    const std::uint32_t solverB = solverIndexOf(b);
+    solver_.preStep(pair, solverA, solverB, bodies.valueAt(a), bodies.valueAt(b), slop, biasRate);
+  }
+}
+
+template <Scalar S>
+void ImpulseStages<S>::solve(StepContext<S>& step) {
+  takeBodies(step);
+  warmStart(step);
+  for (int i = 0; i < step.state.settings.iterations; ++i) solver_.iterate();
+  storeImpulses(step);
+  storeVelocities(step);
+}
+
+template <Scalar S>
+void ImpulseStages<S>::takeBodies(const StepContext<S>& step) {
+  for (const std::uint32_t index : bodies_) {
+    const Body<S>& body = step.state.bodies.valueAt(index);
+    solver_.bodies.push_back(
+        {body.velocity(), body.angularVelocity(), body.velocityBias(), body.angularVelocityBias()});
+  }
+}
+
+/// Applies the impulses of the last step, scaled as the steps are long.
+template <Scalar S>
+void ImpulseStages<S>::warmStart(const StepContext<S>& step) {
+  const S coefficient = step.dtBefore == S(0) ? S(0) : stepRatio(step.dt, step.dtBefore);
+  std::size_t next = 0;
+  for (const Pair<S>& pair : step.state.pairs) {
+    if (pair.solved == 0) continue;
+    for (int i = 0; i < pair.count; ++i, ++next) {
+      if (pair.state != ArbiterState::firstCollision) solver_.warmStart(solver_.rows[next], coefficient);
+    }
+  }
+}
+
+template <Scalar S>
+void ImpulseStages<S>::storeImpulses(StepContext<S>& step) {
+  std::size_t next = 0;
+  for (Pair<S>& pair : step.state.pairs) {
+    if (pair.solved == 0) continue;
+    for (int i = 0; i < pair.count; ++i, ++next) {
+      const ImpulseRow<S>& row = solver_.rows[next];
+      Contact<S>& contact = pair.contacts[i];
+      contact.normalSpeed = contact.normalTotal = row.normalSum * row.normalScale;
+      contact.tangentSpeed = contact.tangentTotal = row.tangentSum * row.tangentScale;
+    }
+  }
+}
+
+template <Scalar S>
+void ImpulseStages<S>::storeVelocities(StepContext<S>& step) {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const std::uint32_t index = bodies_[i];
+    Body<S>& body = step.state.bodies.valueAt(index);
+    if (!body.isDynamic()) continue;
+    const ImpulseBody<S>& solved = solver_.bodies[i];
+    step.events.held[index] |= BodyAccess<S>::holdVelocity(body, {solved.velocity, solved.angularVelocity});
+    BodyAccess<S>::setBias(body, heldWithin(solved.biasVelocity, kMaxSpeed<S>),
+                           clamp(solved.biasAngularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>));
+  }
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class ImpulseStages<double>;
+#endif
+template class ImpulseStages<Fixed>;
+template class ImpulseStages<CheckedFixed>;
+
+}  // namespace samestep

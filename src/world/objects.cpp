@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "world/objects.h"
+
+#include <algorithm>
+
+#include "base/require_ieee.h"
+#include "contacts/stages/contact_callbacks.h"
+#include "dynamics/body_access.h"
+
+namespace samestep {
+
+template <Scalar S>
+std::uint32_t Objects<S>::firstShape(Context& world, BodyId id) {
+  require<Fault::BodyNotFound>(world.state.bodies.contains(id));
+  world.derived.ensure(world.state);
+  return world.derived.firstShape[id.index];
+}
+
+template <Scalar S>
+void Objects<S>::checkNew(const Context& world, const Body<S>& body) {
+  require<Fault::DuplicateBody>(!body.id().valid() || BodyAccess<S>::owner(body) != world.wiring.serial);
+  require<Fault::AttachedBody>(!body.id().valid());
+  require<Fault::IllegalBody>(within(body.worldCenter(), world.state.settings.worldExtent),
+                              "Body's position is invalid.");
+}
+
+template <Scalar S>
+void Objects<S>::attach(Context& world, BodyId id) {
+  BodyAccess<S>::attach(world.state.bodies.valueAt(id.index), id, world.wiring.serial);
+  world.derived.ensure(world.state);
+  world.derived.growBodies(world.state.bodies.slots());
+}
+
+template <Scalar S>
+void Objects<S>::erase(Context& world, BodyId id) {
+  world.state.bodies.erase(id);
+  world.derived.poses[id.index] = {};
+}
+
+template <Scalar S>
+void Objects<S>::setType(Context& world, BodyId id, BodyType type) {
+  Body<S>& kept = world.state.bodies.template at<Fault::BodyNotFound>(id);
+  world.derived.touch(id.index);
+  require<Fault::MainStaticBody>(id != world.state.staticBody || type == BodyType::staticBody,
+                                 "The designated static body of a space stays static.");
+  if (type == kept.type()) return;
+  Body<S> changed = kept.detached();
+  changed.setType(type);
+  for (std::uint32_t i = firstShape(world, id); i != kNone; i = world.derived.nextShape[i]) {
+    checkShape(world.state.shapes.valueAt(i), changed);
+  }
+  if (changed.isDynamic() && changed.mass() == S(0)) {
+    const MassProperties<S> mass = massOfShapes(world, id, kNone, nullptr);
+    if (mass.mass > S(0)) changed.setMassProperties(mass);
+  }
+
+  BodyAccess<S>::attach(changed, kept.id(), BodyAccess<S>::owner(kept));
+  kept = changed;
+}
+
+template <Scalar S>
+void Objects<S>::accumulateMass(Context& world, BodyId id) {
+  require<Fault::BodyNotFound>(world.state.bodies.contains(id));
+  world.derived.touch(id.index);
+  takeMass(world, id, kNone, nullptr);
+}
+
+template <Scalar S>
+void Objects<S>::checkShape(const Shape<S>& shape, const Body<S>& body) {
+  const S limit = body.type() == BodyType::staticBody ? S(kMaxExtent) : S(kMaxDynamicExtent);
+  require<Fault::SizeOutOfRange>(shape.extent() <= limit,
+                                 "A shape of a body that moves reaches farther than 2^8 m from its origin.");
+}
+
+/// What the shapes of a body weigh together, with `by`, unless it is null, in place of the one in the slot
+/// `replaced`, if there is one. By rising slot, so that it does not matter which came first.
+template <Scalar S>
+MassProperties<S> Objects<S>::massOfShapes(Context& world, BodyId id, std::uint32_t replaced,
+                                           const Shape<S>* by) {
+  // The shapes' own sums first, then the parallel axes, all at full range: no Fixed intermediate can
+  // overflow or lose a small shape beside a large one.
+  struct Part {
+    Scaled<S> mass, x, y, unitMoment;
+  };
+  Scaled<S> mass{}, x{}, y{}, moment{};
+  const auto eachPart = [&](auto&& visit) {
+    const auto visitShape = [&](const Shape<S>& shape) {
+      const ShapeMassInfo<S>& info = shape.massInfo();
+      if (info.mass > S(0)) {
+        visit(
+            Part{toScaled(info.mass), toScaled(info.centroid.x), toScaled(info.centroid.y), info.unitMoment});
+      }
+    };
+    const Shape<S>* waiting = by;
+    for (std::uint32_t i = firstShape(world, id); i != kNone; i = world.derived.nextShape[i]) {
+      if (waiting != nullptr && i >= replaced) {
+        visitShape(*waiting);
+        waiting = nullptr;
+      }
+      if (i != replaced) visitShape(world.state.shapes.valueAt(i));
+    }
+    if (waiting != nullptr) visitShape(*waiting);
+  };
+  // One lonely shape keeps its numbers exactly.
+  eachPart([&](const Part& part) {
+    const Scaled<S> sum = mass + part.mass;
+    const Scaled<S> dx = part.x - x;
+    const Scaled<S> dy = part.y - y;
+    moment = moment + part.mass * part.unitMoment;
+    if (mass > Scaled<S>{}) {
+      moment = moment + (dx * dx + dy * dy) * (mass * part.mass / sum);
+      x = x + dx * (part.mass / sum);
+      y = y + dy * (part.mass / sum);
+    } else {
+      x = part.x;
+      y = part.y;
+    }
+    mass = sum;
+  });
+  return {saturated<S>(mass), moment, {toScalar<S>(x), toScalar<S>(y)}};
+}
+
+/// Whether any shape of a body has mass, with `by` in place of one of them as in massOfShapes.
+template <Scalar S>
+bool Objects<S>::anyShapeWeighs(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by) {
+  if (by != nullptr && by->mass() > S(0)) return true;
+  for (std::uint32_t i = firstShape(world, id); i != kNone; i = world.derived.nextShape[i]) {
+    if (i != replaced && world.state.shapes.valueAt(i).mass() > S(0)) return true;
+  }
+  return false;
+}
+
+/// Makes a body weigh what its shapes do, after a change of those that have mass. One that is not dynamic
+/// has no use for a mass, whose parts may be beyond what a dynamic one may have: it is summed when it
+/// becomes dynamic.
+template <Scalar S>
+void Objects<S>::takeMass(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by) {
+  Body<S>& holder = world.state.bodies.valueAt(id.index);
+  if (holder.isDynamic()) {
+    holder.setMassProperties(massOfShapes(world, id, replaced, by));
+  } else if (anyShapeWeighs(world, id, replaced, by)) {
+    BodyAccess<S>::forgetMass(holder);
+  } else {
+    holder.setMassProperties({});
+  }
+}
+
+template <Scalar S>
+void Objects<S>::insert(Context& world, const Shape<S>& shape, ShapeId id) {
+  require<Fault::DuplicateShape>(!shape.id().valid() || shape.owner() != world.wiring.serial);
+  require<Fault::AttachedShape>(!shape.id().valid());
+  const Body<S>& holder = world.state.bodies.template at<Fault::BodyNotFound>(shape.body());
+  require<Fault::DegenerateShape>(shape.wellFormed());
+  checkShape(shape, holder);
+  world.derived.ensure(world.state);
+  const BodyId bodyId = shape.body();
+  if (shape.mass() > S(0)) takeMass(world, bodyId, id.index, &shape);
+
+  world.derived.shapesHashKnown = false;
+  world.state.shapes.store(id, shape);
+  Shape<S>& kept = world.state.shapes.valueAt(id.index);
+  kept.attach(id, world.wiring.serial);
+  world.derived.growShapes(world.state.shapes.slots());
+  world.derived.linkShape(bodyId.index, id.index);
+  world.derived.prepareShape(id.index, kept);
+  // The next step or query places all shapes of the body.
+  world.derived.poses[bodyId.index].known = false;
+  world.derived.touch(bodyId.index);
+}
+
+template <Scalar S>
+void Objects<S>::erase(Context& world, ShapeId id) {
+  world.derived.ensure(world.state);
+  const BodyId bodyId = world.state.shapes.valueAt(id.index).body();
+  ContactCallbacks<S>::dropPairs(world, bodyId, id);
+
+  if (world.state.shapes.valueAt(id.index).mass() > S(0)) takeMass(world, bodyId, id.index, nullptr);
+  world.derived.dropBox(id.index);
+  world.derived.unlinkShape(bodyId.index, id.index);
+  world.derived.shapesHashKnown = false;
+  world.state.shapes.erase(id);
+  world.derived.touch(bodyId.index);
+}
+
+template <Scalar S>
+void Objects<S>::replace(Context& world, ShapeId id, const Shape<S>& shape, bool locked) {
+  Shape<S>& kept = world.state.shapes.template at<Fault::ShapeNotFound>(id);
+  Shape<S> next = shape;
+  next.attach(id, world.wiring.serial);
+  next.setBody(kept.body());
+  const std::span<const Vector<S>> before = kept.vertices(), after = next.vertices();
+  const bool sameGeometry = next.type() == kept.type() && next.radius() == kept.radius() &&
+                            std::equal(before.begin(), before.end(), after.begin(), after.end());
+  // Where a shape without mass has its centroid is nothing to its body.
+  const bool weighs = next.mass() > S(0) || kept.mass() > S(0);
+  const bool sameMass = !weighs || next.massInfo() == kept.massInfo();
+  if (!sameGeometry || !sameMass) {
+    require<Fault::SpaceLocked>(!locked);
+    require<Fault::DegenerateShape>(next.wellFormed());
+    checkShape(next, world.state.bodies.valueAt(kept.body().index));
+    world.derived.ensure(world.state);
+    if (!sameMass) takeMass(world, kept.body(), id.index, &next);
+    world.derived.touch(kept.body().index);
+  }
+
+  world.derived.shapesHashKnown = false;
+  world.derived.surfacesKnown = false;
+  kept = next;
+  world.derived.ensure(world.state);
+  world.derived.takeTraits(id.index, kept);
+  if (!sameGeometry) {
+    forgetManifolds(world, id);
+    world.derived.prepareShape(id.index, kept);
+    world.derived.poses[kept.body().index].known = false;
+  }
+}
+
+/// The next step collides anew what touches a shape.
+template <Scalar S>
+void Objects<S>::forgetManifolds(Context& world, ShapeId id) {
+  for (const std::uint32_t index :
+       world.derived.pairsOf(world.state, world.state.shapes.valueAt(id.index).body())) {
+    Pair<S>& pair = world.state.pairs[index];
+    if (pair.a == id || pair.b == id) pair.manifold = Manifold::unknown;
+  }
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template struct Objects<double>;
+#endif
+template struct Objects<Fixed>;
+template struct Objects<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "context/step_context.h"
+
+namespace samestep {
+
+/// Bodies and shapes as they come, change and go: checks first, then the state, then what is derived from it.
+/// The caller has made sure that the Space is not locked where that is asked for.
+template <Scalar S>
+struct Objects {
+  using Context = StepContext<S>;
+  static constexpr std::uint32_t kNone = Derived<S>::kNone;
+
+  /// The first shape of a body, by rising slot; kNone without.
+  /// @throws BodyNotFound
+  static std::uint32_t firstShape(Context& world, BodyId id);
+
+  static void checkNew(const Context& world, const Body<S>& body);
+  /// Makes a body just stored the Space's own.
+  static void attach(Context& world, BodyId id);
+  static void erase(Context& world, BodyId id);
+  static void setType(Context& world, BodyId id, BodyType type);
+  static void accumulateMass(Context& world, BodyId id);
+
+  /// @pre the id can be given to a new shape
+  static void insert(Context& world, const Shape<S>& shape, ShapeId id);
+  static void erase(Context& world, ShapeId id);
+  /// @param locked  whether geometry and mass may not change
+  static void replace(Context& world, ShapeId id, const Shape<S>& shape, bool locked);
+
+ private:
+  static void checkShape(const Shape<S>& shape, const Body<S>& body);
+  static MassProperties<S> massOfShapes(Context& world, BodyId id, std::uint32_t replaced,
+                                        const Shape<S>* by);
+  static bool anyShapeWeighs(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by);
+  static void takeMass(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by);
+  static void forgetManifolds(Context& world, ShapeId id);
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template struct Objects<double>;
+#endif
+extern template struct Objects<Fixed>;
+extern template struct Objects<CheckedFixed>;
+
+}  // namespace samestep

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "world/step.h"
+
+#include <samestep/environment.h>
+
+#include "base/require_ieee.h"
+#include "contacts/stages/contact_callbacks.h"
+#include "dynamics/stages/integrate.h"
+
+namespace samestep {
+
+const char* stageName(Stage stage) {
+  switch (stage) {
+    case Stage::integratePositions:
+      return "integrate positions";
+    case Stage::updateShapes:
+      return "update shapes";
+    case Stage::findPairs:
+      return "find pairs";
+    case Stage::collide:
+      return "collide";
+    case Stage::preStep:
+      return "pre-step";
+    case Stage::integrateVelocities:
+      return "integrate velocities";
+    case Stage::solve:
+      return "solve";
+    case Stage::callbacks:
+      return "callbacks";
+  }
+  return "unknown";
+}
+
+template <Scalar S>
+std::span<const typename Step<S>::Line> Step<S>::lines(SolverKind solver) {
+  using C = StepContext<S>;
+  static constexpr Line kSequentialImpulses[] = {
+      {Stage::integratePositions, [](Step&, C& step) { Integrate<S>::positions(step); }},
+      {Stage::updateShapes, [](Step& stages, C& step) { stages.placeShapes.run(step); }},
+      {Stage::findPairs, [](Step& stages, C& step) { stages.findPairs.run(step); }},
+      {Stage::collide, [](Step& of, C& step) { of.updateContacts.run(step, of.findPairs.overlapping()); }},
+      {Stage::preStep, [](Step& stages, C& step) { stages.impulses.prepare(step); }},
+      {Stage::integrateVelocities, [](Step&, C& step) { Integrate<S>::velocities(step); }},
+      {Stage::solve, [](Step& stages, C& step) { stages.impulses.solve(step); }},
+      {Stage::callbacks, [](Step&, C& step) { tellResults(step); }},
+  };
+  static constexpr Line kSoftStep[] = {
+      // It ends with all shapes placed: only those of bodies moved by hand since then were not, and are by
+      // now.
+      {Stage::updateShapes, [](Step&, C& step) { step.derived.forgetTouched(); }},
+      {Stage::findPairs, [](Step& stages, C& step) { stages.findPairs.run(step); }},
+      {Stage::collide, [](Step& of, C& step) { of.updateContacts.run(step, of.findPairs.overlapping()); }},
+      {Stage::preStep, [](Step& stages, C& step) { stages.soft.prepare(step); }},
+      {Stage::solve, [](Step& stages, C& step) { stages.soft.solve(step); }},
+      {Stage::integratePositions, [](Step& stages, C& step) { stages.soft.finish(step); }},
+      {Stage::updateShapes, [](Step& stages, C& step) { stages.placeShapes.run(step); }},
+      {Stage::callbacks, [](Step&, C& step) { tellResults(step); }},
+  };
+  if (solver == SolverKind::softStep) return kSoftStep;
+  return kSequentialImpulses;
+}
+
+template <Scalar S>
+void Step<S>::tellResults(StepContext<S>& step) {
+  ContactCallbacks<S>::postSolve(step);
+  step.events.listRange(step.state);
+}
+
+template <Scalar S>
+void Step<S>::check(const StepContext<S>& step) {
+  requireSoundArithmetic<S>();
+  require<Fault::ValueOutOfRange>(step.dt > S(0) && step.dt <= kMaxTimeStep<S>);
+  Integrate<S>::check(step);
+}
+
+template <Scalar S>
+void Step<S>::run(StepContext<S>& step) {
+  step.dtBefore = step.state.timeStep;
+  step.state.timeStep = step.dt;
+  ++step.state.stamp;
+  step.events.begin(step.state);
+  Derived<S>& derived = step.derived;
+  if (derived.leftMidway) derived.touchAll(step.state);
+  derived.leftMidway = true;
+  // What position functions ask about is the world before any of them moved a body; the soft step begins with
+  // it: nothing but what was moved by hand has to be placed.
+  if (step.isSoft() || !step.wiring.positionFuncs.empty()) derived.refresh(step.state);
+  const KeepPlaced keep(derived);
+  runLines(step);
+  derived.leftMidway = false;
+}
+
+template <Scalar S>
+void Step<S>::runLines(StepContext<S>& step) {
+  const bool movesFirst = !step.isSoft();
+  if (movesFirst && FindPairs<S>::mayFindTooMany(step)) bodiesBefore_ = step.state.bodies;
+  for (const Line& line : lines(step.state.settings.solver)) {
+    line.run(*this, step);
+    if (step.refused) {
+      if (movesFirst) step.state.bodies = bodiesBefore_;
+      refuse(step);
+    }
+    if (step.wiring.observer != nullptr)
+      step.wiring.observer(step.space, line.name, step.wiring.observerData);
+  }
+}
+
+/// Ends a step that found too many pairs, with all bodies where they were: it is as if it had not begun.
+template <Scalar S>
+void Step<S>::refuse(StepContext<S>& step) {
+  step.state.timeStep = step.dtBefore;
+  --step.state.stamp;
+  step.derived.touchAll(step.state);
+  step.derived.leftMidway = false;
+  fail<Fault::TooManyPairs>();
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template struct Step<double>;
+#endif
+template struct Step<Fixed>;
+template struct Step<CheckedFixed>;
+
+}  // namespace samestep

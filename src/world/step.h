@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include <samestep/slot_map.h>
+
+#include "broad_phase/stages/find_pairs.h"
+#include "broad_phase/stages/place_shapes.h"
+#include "contacts/stages/update_contacts.h"
+#include "context/step_context.h"
+#include "solver/sequential_impulse/stages/impulse_stages.h"
+#include "solver/soft_step/stages/soft_stages.h"
+
+namespace samestep {
+
+/// A step: a list of stages for each solver, see step.cpp, and the stages, each with the memory it keeps for
+/// itself.
+template <Scalar S>
+struct Step {
+  /// One line of the list.
+  struct Line {
+    Stage name;
+    void (*run)(Step& stages, StepContext<S>& step);
+  };
+  static std::span<const Line> lines(SolverKind solver);
+
+  /// @throws ValueOutOfRange, IllegalBody, MissingCallback, UnsoundArithmetic, before anything changes
+  static void check(const StepContext<S>& step);
+  /// Makes a step of a world that was checked.
+  /// @throws TooManyPairs; what callbacks throw
+  void run(StepContext<S>& step);
+
+  PlaceShapes<S> placeShapes;
+  FindPairs<S> findPairs;
+  UpdateContacts<S> updateContacts;
+  ImpulseStages<S> impulses;
+  SoftStages<S> soft;
+
+ private:
+  /// Within a step queries see the shapes where it placed them.
+  class KeepPlaced {
+   public:
+    explicit KeepPlaced(Derived<S>& derived) : derived_(derived) { derived_.keepPlaced = true; }
+    ~KeepPlaced() { derived_.keepPlaced = false; }
+    KeepPlaced(const KeepPlaced&) = delete;
+    KeepPlaced& operator=(const KeepPlaced&) = delete;
+
+   private:
+    Derived<S>& derived_;
+  };
+
+  static void tellResults(StepContext<S>& step);
+  void runLines(StepContext<S>& step);
+  [[noreturn]] void refuse(StepContext<S>& step);
+
+  SlotMap<Body<S>, BodyId> bodiesBefore_;  // Of a step that may be refused after bodies moved.
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template struct Step<double>;
+#endif
+extern template struct Step<Fixed>;
+extern template struct Step<CheckedFixed>;
+
+}  // namespace samestep
