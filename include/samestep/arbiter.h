@@ -215,10 +215,7 @@ class Arbiter {
   bool removal_ = false;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class Arbiter<double>;
-#endif
-extern template class Arbiter<Fixed>;
-extern template class Arbiter<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class Arbiter<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -123,10 +123,7 @@ class BBTree final : public SpatialIndex<S> {
   const SpatialIndex<S>* pairedWith_ = nullptr;  ///< The static index that pairs_ knows.
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class BBTree<double>;
-#endif
-extern template class BBTree<Fixed>;
-extern template class BBTree<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class BBTree<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -309,10 +309,7 @@ class Body {
   std::uint8_t held_ = 0;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class Body<double>;
-#endif
-extern template class Body<Fixed>;
-extern template class Body<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class Body<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

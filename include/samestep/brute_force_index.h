@@ -36,10 +36,7 @@ class BruteForceIndex final : public SpatialIndex<S> {
   std::vector<Entry> entries_;  ///< By rising key.
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class BruteForceIndex<double>;
-#endif
-extern template class BruteForceIndex<Fixed>;
-extern template class BruteForceIndex<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class BruteForceIndex<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -65,30 +65,7 @@ Scaled<S> scaledAreaForCircle(S innerRadius, S outerRadius);
 template <Scalar S>
 S areaForCircle(S innerRadius, S outerRadius);
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class CircleShape<double>;
-extern template Shape<double> circleShape<double>(BodyId, double, const Vector<double>&);
-extern template Scaled<double> scaledMomentForCircle<double>(Scaled<double>, double, double,
-                                                             const Vector<double>&);
-extern template double momentForCircle<double>(double, double, double, const Vector<double>&);
-extern template Scaled<double> scaledAreaForCircle<double>(double, double);
-extern template double areaForCircle<double>(double, double);
-#endif
-extern template class CircleShape<Fixed>;
-extern template Shape<Fixed> circleShape<Fixed>(BodyId, Fixed, const Vector<Fixed>&);
-extern template Scaled<Fixed> scaledMomentForCircle<Fixed>(Scaled<Fixed>, Fixed, Fixed, const Vector<Fixed>&);
-extern template Fixed momentForCircle<Fixed>(Fixed, Fixed, Fixed, const Vector<Fixed>&);
-extern template Scaled<Fixed> scaledAreaForCircle<Fixed>(Fixed, Fixed);
-extern template Fixed areaForCircle<Fixed>(Fixed, Fixed);
-extern template class CircleShape<CheckedFixed>;
-extern template Shape<CheckedFixed> circleShape<CheckedFixed>(BodyId, CheckedFixed,
-                                                              const Vector<CheckedFixed>&);
-extern template Scaled<CheckedFixed> scaledMomentForCircle<CheckedFixed>(Scaled<CheckedFixed>, CheckedFixed,
-                                                                         CheckedFixed,
-                                                                         const Vector<CheckedFixed>&);
-extern template CheckedFixed momentForCircle<CheckedFixed>(CheckedFixed, CheckedFixed, CheckedFixed,
-                                                           const Vector<CheckedFixed>&);
-extern template Scaled<CheckedFixed> scaledAreaForCircle<CheckedFixed>(CheckedFixed, CheckedFixed);
-extern template CheckedFixed areaForCircle<CheckedFixed>(CheckedFixed, CheckedFixed);
+#define SAMESTEP_EACH_SCALAR extern template class CircleShape<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -66,15 +66,4 @@ template <Scalar S>
 int convexHull(std::span<const Vector<S>> points, std::span<Vector<S>> result, int* first = nullptr,
                S tolerance = S(0));
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template LoopIndices loopIndices<double>(std::span<const Vector<double>>);
-extern template int convexHull<double>(std::span<const Vector<double>>, std::span<Vector<double>>, int*,
-                                       double);
-#endif
-extern template LoopIndices loopIndices<Fixed>(std::span<const Vector<Fixed>>);
-extern template LoopIndices loopIndices<CheckedFixed>(std::span<const Vector<CheckedFixed>>);
-extern template int convexHull<Fixed>(std::span<const Vector<Fixed>>, std::span<Vector<Fixed>>, int*, Fixed);
-extern template int convexHull<CheckedFixed>(std::span<const Vector<CheckedFixed>>,
-                                             std::span<Vector<CheckedFixed>>, int*, CheckedFixed);
-
 }  // namespace samestep

@@ -15,10 +15,4 @@ namespace samestep {
 template <Scalar S>
 std::uint64_t fingerprint();
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template std::uint64_t fingerprint<double>();
-#endif
-extern template std::uint64_t fingerprint<Fixed>();
-extern template std::uint64_t fingerprint<CheckedFixed>();
-
 }  // namespace samestep

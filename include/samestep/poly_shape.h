@@ -111,59 +111,7 @@ S areaForPoly(std::span<const Vector<S>> vertices, S radius);
 template <Scalar S>
 Vector<S> centroidForPoly(std::span<const Vector<S>> vertices);
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class PolyShape<double>;
-extern template Shape<double> polyShape<double>(BodyId, std::span<const Vector<double>>,
-                                                const Transform<double>&, double);
-extern template Shape<double> polyShapeRaw<double>(BodyId, std::span<const Vector<double>>, double);
-extern template Shape<double> boxShape<double>(BodyId, double, double, double);
-extern template Shape<double> boxShape<double>(BodyId, const BB<double>&, double);
-extern template Scaled<double> scaledMomentForPoly<double>(Scaled<double>, std::span<const Vector<double>>,
-                                                           const Vector<double>&);
-extern template double momentForPoly<double>(double, std::span<const Vector<double>>, const Vector<double>&,
-                                             double);
-extern template Scaled<double> scaledMomentForBox<double>(Scaled<double>, double, double);
-extern template double momentForBox<double>(double, double, double);
-extern template double momentForBox<double>(double, const BB<double>&);
-extern template Scaled<double> scaledAreaForPoly<double>(std::span<const Vector<double>>, double);
-extern template double areaForPoly<double>(std::span<const Vector<double>>, double);
-extern template Vector<double> centroidForPoly<double>(std::span<const Vector<double>>);
-#endif
-extern template class PolyShape<Fixed>;
-extern template Shape<Fixed> polyShape<Fixed>(BodyId, std::span<const Vector<Fixed>>, const Transform<Fixed>&,
-                                              Fixed);
-extern template Shape<Fixed> polyShapeRaw<Fixed>(BodyId, std::span<const Vector<Fixed>>, Fixed);
-extern template Shape<Fixed> boxShape<Fixed>(BodyId, Fixed, Fixed, Fixed);
-extern template Shape<Fixed> boxShape<Fixed>(BodyId, const BB<Fixed>&, Fixed);
-extern template Scaled<Fixed> scaledMomentForPoly<Fixed>(Scaled<Fixed>, std::span<const Vector<Fixed>>,
-                                                         const Vector<Fixed>&);
-extern template Fixed momentForPoly<Fixed>(Fixed, std::span<const Vector<Fixed>>, const Vector<Fixed>&,
-                                           Fixed);
-extern template Scaled<Fixed> scaledMomentForBox<Fixed>(Scaled<Fixed>, Fixed, Fixed);
-extern template Fixed momentForBox<Fixed>(Fixed, Fixed, Fixed);
-extern template Fixed momentForBox<Fixed>(Fixed, const BB<Fixed>&);
-extern template Scaled<Fixed> scaledAreaForPoly<Fixed>(std::span<const Vector<Fixed>>, Fixed);
-extern template Fixed areaForPoly<Fixed>(std::span<const Vector<Fixed>>, Fixed);
-extern template Vector<Fixed> centroidForPoly<Fixed>(std::span<const Vector<Fixed>>);
-extern template class PolyShape<CheckedFixed>;
-extern template Shape<CheckedFixed> polyShape<CheckedFixed>(BodyId, std::span<const Vector<CheckedFixed>>,
-                                                            const Transform<CheckedFixed>&, CheckedFixed);
-extern template Shape<CheckedFixed> polyShapeRaw<CheckedFixed>(BodyId, std::span<const Vector<CheckedFixed>>,
-                                                               CheckedFixed);
-extern template Shape<CheckedFixed> boxShape<CheckedFixed>(BodyId, CheckedFixed, CheckedFixed, CheckedFixed);
-extern template Shape<CheckedFixed> boxShape<CheckedFixed>(BodyId, const BB<CheckedFixed>&, CheckedFixed);
-extern template Scaled<CheckedFixed> scaledMomentForPoly<CheckedFixed>(Scaled<CheckedFixed>,
-                                                                       std::span<const Vector<CheckedFixed>>,
-                                                                       const Vector<CheckedFixed>&);
-extern template CheckedFixed momentForPoly<CheckedFixed>(CheckedFixed, std::span<const Vector<CheckedFixed>>,
-                                                         const Vector<CheckedFixed>&, CheckedFixed);
-extern template Scaled<CheckedFixed> scaledMomentForBox<CheckedFixed>(Scaled<CheckedFixed>, CheckedFixed,
-                                                                      CheckedFixed);
-extern template CheckedFixed momentForBox<CheckedFixed>(CheckedFixed, CheckedFixed, CheckedFixed);
-extern template CheckedFixed momentForBox<CheckedFixed>(CheckedFixed, const BB<CheckedFixed>&);
-extern template Scaled<CheckedFixed> scaledAreaForPoly<CheckedFixed>(std::span<const Vector<CheckedFixed>>,
-                                                                     CheckedFixed);
-extern template CheckedFixed areaForPoly<CheckedFixed>(std::span<const Vector<CheckedFixed>>, CheckedFixed);
-extern template Vector<CheckedFixed> centroidForPoly<CheckedFixed>(std::span<const Vector<CheckedFixed>>);
+#define SAMESTEP_EACH_SCALAR extern template class PolyShape<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -35,10 +35,7 @@ class SavedSpace {
   Derived<S>* derived_;  ///< Null only after a move.
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class SavedSpace<double>;
-#endif
-extern template class SavedSpace<Fixed>;
-extern template class SavedSpace<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class SavedSpace<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

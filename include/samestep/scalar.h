@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
 #include <samestep/fixed.h>
@@ -23,7 +24,11 @@ enum class ScalarKind : std::uint8_t { fixed = 1, float64 = 2 };
 
 template <class Rep, int kFractionBits, class Overflow>
 struct ScalarTraits<BasicFixed<Rep, kFractionBits, Overflow>> {
+#ifdef SAMESTEP_NO_CHECKED
+  static constexpr bool kSupported = std::same_as<Overflow, Wrapping>;
+#else
   static constexpr bool kSupported = true;
+#endif
   static constexpr ScalarKind kKind = ScalarKind::fixed;
   /// Whether it is cheaper to multiply again than to keep a product in memory.
   static constexpr bool kCheapProducts = false;
@@ -38,7 +43,7 @@ struct ScalarTraits<double> {
 };
 #endif
 
-/// double, Fixed or CheckedFixed: the numbers the engine is instantiated for.
+/// double, Fixed or CheckedFixed: the numbers the engine is built for (SAMESTEP_SCALARS, SAMESTEP_CHECKED).
 template <class S>
 concept Scalar = ScalarTraits<S>::kSupported;
 

@@ -82,37 +82,7 @@ Scaled<S> scaledAreaForSegment(const Vector<S>& a, const Vector<S>& b, S radius)
 template <Scalar S>
 S areaForSegment(const Vector<S>& a, const Vector<S>& b, S radius);
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class SegmentShape<double>;
-extern template Shape<double> segmentShape<double>(BodyId, const Vector<double>&, const Vector<double>&,
-                                                   double);
-extern template Scaled<double> scaledMomentForSegment<double>(Scaled<double>, const Vector<double>&,
-                                                              const Vector<double>&, double);
-extern template double momentForSegment<double>(double, const Vector<double>&, const Vector<double>&, double);
-extern template Scaled<double> scaledAreaForSegment<double>(const Vector<double>&, const Vector<double>&,
-                                                            double);
-extern template double areaForSegment<double>(const Vector<double>&, const Vector<double>&, double);
-#endif
-extern template class SegmentShape<Fixed>;
-extern template Shape<Fixed> segmentShape<Fixed>(BodyId, const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
-extern template Scaled<Fixed> scaledMomentForSegment<Fixed>(Scaled<Fixed>, const Vector<Fixed>&,
-                                                            const Vector<Fixed>&, Fixed);
-extern template Fixed momentForSegment<Fixed>(Fixed, const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
-extern template Scaled<Fixed> scaledAreaForSegment<Fixed>(const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
-extern template Fixed areaForSegment<Fixed>(const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
-extern template class SegmentShape<CheckedFixed>;
-extern template Shape<CheckedFixed> segmentShape<CheckedFixed>(BodyId, const Vector<CheckedFixed>&,
-                                                               const Vector<CheckedFixed>&, CheckedFixed);
-extern template Scaled<CheckedFixed> scaledMomentForSegment<CheckedFixed>(Scaled<CheckedFixed>,
-                                                                          const Vector<CheckedFixed>&,
-                                                                          const Vector<CheckedFixed>&,
-                                                                          CheckedFixed);
-extern template CheckedFixed momentForSegment<CheckedFixed>(CheckedFixed, const Vector<CheckedFixed>&,
-                                                            const Vector<CheckedFixed>&, CheckedFixed);
-extern template Scaled<CheckedFixed> scaledAreaForSegment<CheckedFixed>(const Vector<CheckedFixed>&,
-                                                                        const Vector<CheckedFixed>&,
-                                                                        CheckedFixed);
-extern template CheckedFixed areaForSegment<CheckedFixed>(const Vector<CheckedFixed>&,
-                                                          const Vector<CheckedFixed>&, CheckedFixed);
+#define SAMESTEP_EACH_SCALAR extern template class SegmentShape<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

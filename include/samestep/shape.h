@@ -358,45 +358,7 @@ template <Scalar S>
 SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a, const Vector<S>& b,
                                  S radius = S(0));
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class Shape<double>;
-extern template int planeCount<double>(const Shape<double>&);
-extern template void prepare<double>(const Shape<double>&, Plane<double>*, PlacedShape<double>&);
-extern template BB<double> place<double>(const Transform<double>&, PlacedShape<double>&);
-extern template BB<double> place<double>(const Shape<double>&, const Transform<double>&, Plane<double>*,
-                                         PlacedShape<double>&);
-extern template BB<double> boundingBox<double>(const Shape<double>&, const Transform<double>&);
-extern template PointQueryInfo<double> pointQuery<double>(const PlacedShape<double>&, const Vector<double>&);
-extern template SegmentQueryInfo<double> segmentQuery<double>(const PlacedShape<double>&,
-                                                              const Vector<double>&, const Vector<double>&,
-                                                              double);
-#endif
-extern template class Shape<Fixed>;
-extern template int planeCount<Fixed>(const Shape<Fixed>&);
-extern template void prepare<Fixed>(const Shape<Fixed>&, Plane<Fixed>*, PlacedShape<Fixed>&);
-extern template BB<Fixed> place<Fixed>(const Transform<Fixed>&, PlacedShape<Fixed>&);
-extern template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, Plane<Fixed>*,
-                                       PlacedShape<Fixed>&);
-extern template BB<Fixed> boundingBox<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&);
-extern template PointQueryInfo<Fixed> pointQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&);
-extern template SegmentQueryInfo<Fixed> segmentQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&,
-                                                            const Vector<Fixed>&, Fixed);
-extern template class Shape<CheckedFixed>;
-extern template int planeCount<CheckedFixed>(const Shape<CheckedFixed>&);
-extern template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, Plane<CheckedFixed>*,
-                                           PlacedShape<CheckedFixed>&);
-extern template BB<CheckedFixed> place<CheckedFixed>(const Transform<CheckedFixed>&,
-                                                     PlacedShape<CheckedFixed>&);
-extern template BB<CheckedFixed> place<CheckedFixed>(const Shape<CheckedFixed>&,
-                                                     const Transform<CheckedFixed>&, Plane<CheckedFixed>*,
-                                                     PlacedShape<CheckedFixed>&);
-extern template BB<CheckedFixed> boundingBox<CheckedFixed>(const Shape<CheckedFixed>&,
-                                                           const Transform<CheckedFixed>&);
-extern template PointQueryInfo<CheckedFixed> pointQuery<CheckedFixed>(const PlacedShape<CheckedFixed>&,
-                                                                      const Vector<CheckedFixed>&);
-extern template SegmentQueryInfo<CheckedFixed> segmentQuery<CheckedFixed>(const PlacedShape<CheckedFixed>&,
-                                                                          const Vector<CheckedFixed>&,
-                                                                          const Vector<CheckedFixed>&,
-                                                                          CheckedFixed);
+#define SAMESTEP_EACH_SCALAR extern template class Shape<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -51,16 +51,4 @@ template <Scalar S>
 void loadSnapshot(Space<S>& space, std::span<const std::uint8_t> bytes,
                   OtherRevision otherRevision = OtherRevision::refuse, const WorldLimits& limits = {});
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template std::uint64_t saveSnapshot<double>(const Space<double>&, std::span<std::uint8_t>);
-extern template void loadSnapshot<double>(Space<double>&, std::span<const std::uint8_t>, OtherRevision,
-                                          const WorldLimits&);
-#endif
-extern template std::uint64_t saveSnapshot<Fixed>(const Space<Fixed>&, std::span<std::uint8_t>);
-extern template void loadSnapshot<Fixed>(Space<Fixed>&, std::span<const std::uint8_t>, OtherRevision,
-                                         const WorldLimits&);
-extern template std::uint64_t saveSnapshot<CheckedFixed>(const Space<CheckedFixed>&, std::span<std::uint8_t>);
-extern template void loadSnapshot<CheckedFixed>(Space<CheckedFixed>&, std::span<const std::uint8_t>,
-                                                OtherRevision, const WorldLimits&);
-
 }  // namespace samestep

@@ -434,10 +434,7 @@ class Space {
   std::int32_t locked_ = 0;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class Space<double>;
-#endif
-extern template class Space<Fixed>;
-extern template class Space<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class Space<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -38,23 +38,4 @@ WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& of
 template <Scalar S>
 const char* flawOf(const WorldState<S>& world, const WorldLimits& limits = {});
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template std::uint64_t encodeWorld<double>(const WorldState<double>&, std::span<std::uint8_t>);
-extern template void encodeWorld<double>(const WorldState<double>&, std::vector<std::uint8_t>&);
-extern template WorldState<double> decodeWorld<double>(std::span<const std::uint8_t>, std::uint64_t&,
-                                                       const WorldLimits&);
-extern template const char* flawOf<double>(const WorldState<double>&, const WorldLimits&);
-#endif
-extern template std::uint64_t encodeWorld<Fixed>(const WorldState<Fixed>&, std::span<std::uint8_t>);
-extern template void encodeWorld<Fixed>(const WorldState<Fixed>&, std::vector<std::uint8_t>&);
-extern template WorldState<Fixed> decodeWorld<Fixed>(std::span<const std::uint8_t>, std::uint64_t&,
-                                                     const WorldLimits&);
-extern template const char* flawOf<Fixed>(const WorldState<Fixed>&, const WorldLimits&);
-extern template std::uint64_t encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&,
-                                                        std::span<std::uint8_t>);
-extern template void encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&, std::vector<std::uint8_t>&);
-extern template WorldState<CheckedFixed> decodeWorld<CheckedFixed>(std::span<const std::uint8_t>,
-                                                                   std::uint64_t&, const WorldLimits&);
-extern template const char* flawOf<CheckedFixed>(const WorldState<CheckedFixed>&, const WorldLimits&);
-
 }  // namespace samestep

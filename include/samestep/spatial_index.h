@@ -111,10 +111,7 @@ class SpatialIndex {
   SpatialIndex* dynamicIndex_ = nullptr;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class SpatialIndex<double>;
-#endif
-extern template class SpatialIndex<Fixed>;
-extern template class SpatialIndex<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class SpatialIndex<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -21,10 +21,9 @@ constexpr std::int64_t kRefreshMilliseconds = 200;
 }  // namespace
 
 void addScalarOption(CLI::App& app, std::string& scalar) {
-  std::vector<std::string> names{"fixed", "checked"};
-#ifndef SAMESTEP_FIXED_ONLY
-  names.insert(names.begin() + 1, "double");
-#endif
+  std::vector<std::string> names{"fixed"};
+  if (ScalarTraits<double>::kSupported) names.emplace_back("double");
+  if (ScalarTraits<CheckedFixed>::kSupported) names.emplace_back("checked");
   app.add_option("--scalar", scalar, "The number type that the world is computed with")
       ->check(CLI::IsMember(names))
       ->capture_default_str();

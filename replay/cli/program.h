@@ -67,10 +67,12 @@ void addComputeOptions(CLI::App& app, ComputeOptions& options);
 template <class Visit>
 int withScalar(const std::string& name, Visit&& visit) {
   if (name == "fixed") return visit(Fixed());
-  if (name == "checked") return visit(CheckedFixed());
-#ifndef SAMESTEP_FIXED_ONLY
-  if (name == "double") return visit(double());
-#endif
+  if constexpr (ScalarTraits<CheckedFixed>::kSupported) {
+    if (name == "checked") return visit(CheckedFixed());
+  }
+  if constexpr (ScalarTraits<double>::kSupported) {
+    if (name == "double") return visit(double());
+  }
   throw Unusable("this build has no scalar \"" + name + "\"");
 }
 

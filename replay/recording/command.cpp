@@ -135,11 +135,7 @@ BodyId apply(Space<S>& space, const Command<S>& command, const Wiring<S>& wiring
   return std::visit(Applier<S>{space, wiring}, command);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template BodyId apply<double>(Space<double>&, const Command<double>&, const Wiring<double>&);
-#endif
-template BodyId apply<Fixed>(Space<Fixed>&, const Command<Fixed>&, const Wiring<Fixed>&);
-template BodyId apply<CheckedFixed>(Space<CheckedFixed>&, const Command<CheckedFixed>&,
-                                    const Wiring<CheckedFixed>&);
+#define SAMESTEP_EACH_SCALAR template BodyId apply<S>(Space<S>&, const Command<S>&, const Wiring<S>&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

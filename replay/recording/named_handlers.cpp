@@ -112,13 +112,9 @@ Wiring<S> namedHandlerWiring() {
   return {.connect = connectNamedHandlers<S>};
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template void registerNamedHandlers<double>(Space<double>&);
-template Wiring<double> namedHandlerWiring<double>();
-#endif
-template void registerNamedHandlers<Fixed>(Space<Fixed>&);
-template Wiring<Fixed> namedHandlerWiring<Fixed>();
-template void registerNamedHandlers<CheckedFixed>(Space<CheckedFixed>&);
-template Wiring<CheckedFixed> namedHandlerWiring<CheckedFixed>();
+#define SAMESTEP_EACH_SCALAR                         \
+  template void registerNamedHandlers<S>(Space<S>&); \
+  template Wiring<S> namedHandlerWiring<S>();
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

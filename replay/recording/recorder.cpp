@@ -190,10 +190,7 @@ std::uint64_t Recorder<S>::ticks() const {
   return impl_->ticks;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class Recorder<double>;
-#endif
-template class Recorder<Fixed>;
-template class Recorder<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class Recorder<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -176,10 +176,7 @@ void RecordingReader<S>::readEnd(ByteReader& reader) const {
   if (reader.remaining() > 0) failFormat(reader.offset(), "something follows the end");
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class RecordingReader<double>;
-#endif
-template class RecordingReader<Fixed>;
-template class RecordingReader<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class RecordingReader<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -59,10 +59,7 @@ bool Replay<S>::step() {
   return true;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class Replay<double>;
-#endif
-template class Replay<Fixed>;
-template class Replay<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class Replay<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -106,15 +106,9 @@ ReplayDifference findDifference(std::span<const std::uint8_t> bytesA, std::span<
   return difference;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template ReplayDifference findDifference<double>(std::span<const std::uint8_t>, std::span<const std::uint8_t>,
-                                                 const Wiring<double>&, std::uint32_t, const VerifyOptions&);
-#endif
-template ReplayDifference findDifference<Fixed>(std::span<const std::uint8_t>, std::span<const std::uint8_t>,
-                                                const Wiring<Fixed>&, std::uint32_t, const VerifyOptions&);
-template ReplayDifference findDifference<CheckedFixed>(std::span<const std::uint8_t>,
-                                                       std::span<const std::uint8_t>,
-                                                       const Wiring<CheckedFixed>&, std::uint32_t,
-                                                       const VerifyOptions&);
+#define SAMESTEP_EACH_SCALAR                                                                                \
+  template ReplayDifference findDifference<S>(std::span<const std::uint8_t>, std::span<const std::uint8_t>, \
+                                              const Wiring<S>&, std::uint32_t, const VerifyOptions&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

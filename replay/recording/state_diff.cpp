@@ -244,17 +244,10 @@ std::string describe(const Command<S>& command) {
   return std::string(commandName(kindOf(command))) + ": " + std::visit(Describer<S>(), command);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template std::vector<FieldDifference> differences<double>(const WorldState<double>&,
-                                                          const WorldState<double>&, std::uint32_t);
-template std::string describe<double>(const Command<double>&);
-#endif
-template std::vector<FieldDifference> differences<Fixed>(const WorldState<Fixed>&, const WorldState<Fixed>&,
-                                                         std::uint32_t);
-template std::string describe<Fixed>(const Command<Fixed>&);
-template std::vector<FieldDifference> differences<CheckedFixed>(const WorldState<CheckedFixed>&,
-                                                                const WorldState<CheckedFixed>&,
-                                                                std::uint32_t);
-template std::string describe<CheckedFixed>(const Command<CheckedFixed>&);
+#define SAMESTEP_EACH_SCALAR                                                                       \
+  template std::vector<FieldDifference> differences<S>(const WorldState<S>&, const WorldState<S>&, \
+                                                       std::uint32_t);                             \
+  template std::string describe<S>(const Command<S>&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -42,13 +42,8 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const VerifyOptions& op
 #endif
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template VerifyResult verify<double>(std::span<const std::uint8_t>, const Wiring<double>&,
-                                     const VerifyOptions&);
-#endif
-template VerifyResult verify<Fixed>(std::span<const std::uint8_t>, const Wiring<Fixed>&,
-                                    const VerifyOptions&);
-template VerifyResult verify<CheckedFixed>(std::span<const std::uint8_t>, const Wiring<CheckedFixed>&,
-                                           const VerifyOptions&);
+#define SAMESTEP_EACH_SCALAR \
+  template VerifyResult verify<S>(std::span<const std::uint8_t>, const Wiring<S>&, const VerifyOptions&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

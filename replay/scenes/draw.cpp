@@ -270,10 +270,7 @@ std::string drawSvg(const Space<S>& space, const std::string& caption) {
   return Artist<S>(space).draw(caption);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template std::string drawSvg<double>(const Space<double>&, const std::string&);
-#endif
-template std::string drawSvg<Fixed>(const Space<Fixed>&, const std::string&);
-template std::string drawSvg<CheckedFixed>(const Space<CheckedFixed>&, const std::string&);
+#define SAMESTEP_EACH_SCALAR template std::string drawSvg<S>(const Space<S>&, const std::string&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -49,10 +49,7 @@ void Scene<S>::step() {
   space_.step(timeStep_);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class Scene<double>;
-#endif
-template class Scene<Fixed>;
-template class Scene<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class Scene<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -295,10 +295,7 @@ std::uint32_t SceneBuilder<S>::newName(const Cursor& at, const std::string& name
   return number;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class SceneBuilder<double>;
-#endif
-template class SceneBuilder<Fixed>;
-template class SceneBuilder<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class SceneBuilder<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -139,10 +139,7 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
   if (header) refuseHeader(file, 1);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class SceneBuilder<double>;
-#endif
-template class SceneBuilder<Fixed>;
-template class SceneBuilder<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class SceneBuilder<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -169,10 +169,7 @@ void SceneBuilder<S>::readInputs(const Cursor& at) {
   if (header) throw SceneError(file, 1, "", "the first line must be: tick,body,do,x,y");
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class SceneBuilder<double>;
-#endif
-template class SceneBuilder<Fixed>;
-template class SceneBuilder<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class SceneBuilder<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

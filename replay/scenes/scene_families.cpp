@@ -76,10 +76,7 @@ void SceneBuilder<S>::buildSoup(std::uint32_t count) {
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class SceneBuilder<double>;
-#endif
-template class SceneBuilder<Fixed>;
-template class SceneBuilder<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class SceneBuilder<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -375,10 +375,7 @@ Shape<S> makeNasty(const NastyShape& shape, BodyId body) {
   return polyShapeRaw<S>(body, points, radius);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template Shape<double> makeNasty<double>(const NastyShape&, BodyId);
-#endif
-template Shape<Fixed> makeNasty<Fixed>(const NastyShape&, BodyId);
-template Shape<CheckedFixed> makeNasty<CheckedFixed>(const NastyShape&, BodyId);
+#define SAMESTEP_EACH_SCALAR template Shape<S> makeNasty<S>(const NastyShape&, BodyId);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

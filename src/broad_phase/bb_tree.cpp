@@ -390,10 +390,7 @@ std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
   return all;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class BBTree<double>;
-#endif
-template class BBTree<Fixed>;
-template class BBTree<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class BBTree<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -90,10 +90,7 @@ void BruteForceIndex<S>::reindexQuery(QueryFunc found, void* context) {
   for (const KeyPair& pair : pairs) found(context, pair.a, pair.b);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class BruteForceIndex<double>;
-#endif
-template class BruteForceIndex<Fixed>;
-template class BruteForceIndex<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class BruteForceIndex<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

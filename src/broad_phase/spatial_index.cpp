@@ -61,10 +61,7 @@ void SpatialIndex<S>::collideStatic(const SpatialIndex& other, QueryFunc found, 
   each(collideOne, &call);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class SpatialIndex<double>;
-#endif
-template class SpatialIndex<Fixed>;
-template class SpatialIndex<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class SpatialIndex<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -148,10 +148,7 @@ S Arbiter<S>::totalKE() const {
   return saturated<S>(sum * lighterMass(a, b));
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class Arbiter<double>;
-#endif
-template class Arbiter<Fixed>;
-template class Arbiter<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class Arbiter<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -56,64 +56,19 @@ Scaled<S> inverseMassAlong(const Body<S>& a, const Body<S>& b, const Vector<S>& 
   return sum;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template Vector<double> relativeVelocity<double>(const Body<double>&, const Body<double>&,
-                                                 const Vector<double>&, const Vector<double>&);
-template double normalRelativeVelocity<double>(const Body<double>&, const Body<double>&,
-                                               const Vector<double>&, const Vector<double>&,
-                                               const Vector<double>&);
-template void applyImpulse<double>(Body<double>&, const Vector<double>&, const Vector<double>&);
-template void applyImpulses<double>(Body<double>&, Body<double>&, const Vector<double>&,
-                                    const Vector<double>&, const Vector<double>&);
-template void applyBiasImpulse<double>(Body<double>&, const Vector<double>&, const Vector<double>&);
-template void applyBiasImpulses<double>(Body<double>&, Body<double>&, const Vector<double>&,
-                                        const Vector<double>&, const Vector<double>&);
-template Scaled<double> inverseMassAlong<double>(const Body<double>&, const Vector<double>&,
-                                                 const Vector<double>&);
-template Scaled<double> inverseMassAlong<double>(const Body<double>&, const Body<double>&,
-                                                 const Vector<double>&, const Vector<double>&,
-                                                 const Vector<double>&);
-#endif
-template Vector<Fixed> relativeVelocity<Fixed>(const Body<Fixed>&, const Body<Fixed>&, const Vector<Fixed>&,
-                                               const Vector<Fixed>&);
-template Fixed normalRelativeVelocity<Fixed>(const Body<Fixed>&, const Body<Fixed>&, const Vector<Fixed>&,
-                                             const Vector<Fixed>&, const Vector<Fixed>&);
-template void applyImpulse<Fixed>(Body<Fixed>&, const Vector<Fixed>&, const Vector<Fixed>&);
-template void applyImpulses<Fixed>(Body<Fixed>&, Body<Fixed>&, const Vector<Fixed>&, const Vector<Fixed>&,
-                                   const Vector<Fixed>&);
-template void applyBiasImpulse<Fixed>(Body<Fixed>&, const Vector<Fixed>&, const Vector<Fixed>&);
-template void applyBiasImpulses<Fixed>(Body<Fixed>&, Body<Fixed>&, const Vector<Fixed>&, const Vector<Fixed>&,
-                                       const Vector<Fixed>&);
-template Scaled<Fixed> inverseMassAlong<Fixed>(const Body<Fixed>&, const Vector<Fixed>&,
-                                               const Vector<Fixed>&);
-template Scaled<Fixed> inverseMassAlong<Fixed>(const Body<Fixed>&, const Body<Fixed>&, const Vector<Fixed>&,
-                                               const Vector<Fixed>&, const Vector<Fixed>&);
-template Vector<CheckedFixed> relativeVelocity<CheckedFixed>(const Body<CheckedFixed>&,
-                                                             const Body<CheckedFixed>&,
-                                                             const Vector<CheckedFixed>&,
-                                                             const Vector<CheckedFixed>&);
-template CheckedFixed normalRelativeVelocity<CheckedFixed>(const Body<CheckedFixed>&,
-                                                           const Body<CheckedFixed>&,
-                                                           const Vector<CheckedFixed>&,
-                                                           const Vector<CheckedFixed>&,
-                                                           const Vector<CheckedFixed>&);
-template void applyImpulse<CheckedFixed>(Body<CheckedFixed>&, const Vector<CheckedFixed>&,
-                                         const Vector<CheckedFixed>&);
-template void applyImpulses<CheckedFixed>(Body<CheckedFixed>&, Body<CheckedFixed>&,
-                                          const Vector<CheckedFixed>&, const Vector<CheckedFixed>&,
-                                          const Vector<CheckedFixed>&);
-template void applyBiasImpulse<CheckedFixed>(Body<CheckedFixed>&, const Vector<CheckedFixed>&,
-                                             const Vector<CheckedFixed>&);
-template void applyBiasImpulses<CheckedFixed>(Body<CheckedFixed>&, Body<CheckedFixed>&,
-                                              const Vector<CheckedFixed>&, const Vector<CheckedFixed>&,
-                                              const Vector<CheckedFixed>&);
-template Scaled<CheckedFixed> inverseMassAlong<CheckedFixed>(const Body<CheckedFixed>&,
-                                                             const Vector<CheckedFixed>&,
-                                                             const Vector<CheckedFixed>&);
-template Scaled<CheckedFixed> inverseMassAlong<CheckedFixed>(const Body<CheckedFixed>&,
-                                                             const Body<CheckedFixed>&,
-                                                             const Vector<CheckedFixed>&,
-                                                             const Vector<CheckedFixed>&,
-                                                             const Vector<CheckedFixed>&);
+#define SAMESTEP_EACH_SCALAR                                                                                 \
+  template Vector<S> relativeVelocity<S>(const Body<S>&, const Body<S>&, const Vector<S>&,                   \
+                                         const Vector<S>&);                                                  \
+  template S normalRelativeVelocity<S>(const Body<S>&, const Body<S>&, const Vector<S>&, const Vector<S>&,   \
+                                       const Vector<S>&);                                                    \
+  template void applyImpulse<S>(Body<S>&, const Vector<S>&, const Vector<S>&);                               \
+  template void applyImpulses<S>(Body<S>&, Body<S>&, const Vector<S>&, const Vector<S>&, const Vector<S>&);  \
+  template void applyBiasImpulse<S>(Body<S>&, const Vector<S>&, const Vector<S>&);                           \
+  template void applyBiasImpulses<S>(Body<S>&, Body<S>&, const Vector<S>&, const Vector<S>&,                 \
+                                     const Vector<S>&);                                                      \
+  template Scaled<S> inverseMassAlong<S>(const Body<S>&, const Vector<S>&, const Vector<S>&);                \
+  template Scaled<S> inverseMassAlong<S>(const Body<S>&, const Body<S>&, const Vector<S>&, const Vector<S>&, \
+                                         const Vector<S>&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

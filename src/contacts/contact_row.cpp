@@ -103,23 +103,12 @@ void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairRespo
   highWater<S>("contact: kept impulse u", row.normalSum);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template struct PairResponse<double>;
-template PairResponse<double> respond(const Body<double>&, const Body<double>&);
-template double effectiveInverseMass(const PairResponse<double>&, double, double);
-template void prepareAxes(const Pair<double>&, const Contact<double>&, const PairResponse<double>&,
-                          const Body<double>&, const Body<double>&, ContactAxes<double>&);
-#endif
-template struct PairResponse<Fixed>;
-template PairResponse<Fixed> respond(const Body<Fixed>&, const Body<Fixed>&);
-template Fixed effectiveInverseMass(const PairResponse<Fixed>&, Fixed, Fixed);
-template void prepareAxes(const Pair<Fixed>&, const Contact<Fixed>&, const PairResponse<Fixed>&,
-                          const Body<Fixed>&, const Body<Fixed>&, ContactAxes<Fixed>&);
-template struct PairResponse<CheckedFixed>;
-template PairResponse<CheckedFixed> respond(const Body<CheckedFixed>&, const Body<CheckedFixed>&);
-template CheckedFixed effectiveInverseMass(const PairResponse<CheckedFixed>&, CheckedFixed, CheckedFixed);
-template void prepareAxes(const Pair<CheckedFixed>&, const Contact<CheckedFixed>&,
-                          const PairResponse<CheckedFixed>&, const Body<CheckedFixed>&,
-                          const Body<CheckedFixed>&, ContactAxes<CheckedFixed>&);
+#define SAMESTEP_EACH_SCALAR                                                                           \
+  template struct PairResponse<S>;                                                                     \
+  template PairResponse<S> respond(const Body<S>&, const Body<S>&);                                    \
+  template S effectiveInverseMass(const PairResponse<S>&, S, S);                                       \
+  template void prepareAxes(const Pair<S>&, const Contact<S>&, const PairResponse<S>&, const Body<S>&, \
+                            const Body<S>&, ContactAxes<S>&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

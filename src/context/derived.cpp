@@ -290,15 +290,9 @@ std::span<const std::uint32_t> Derived<S>::pairsOf(const WorldState<S>& world, B
           bodyPairs.pairs.data() + bodyPairs.start[id.index + 1]};
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class LocalPlanes<double>;
-#endif
-template class LocalPlanes<Fixed>;
-template class LocalPlanes<CheckedFixed>;
-#ifndef SAMESTEP_FIXED_ONLY
-template struct Derived<double>;
-#endif
-template struct Derived<Fixed>;
-template struct Derived<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR     \
+  template class LocalPlanes<S>; \
+  template struct Derived<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

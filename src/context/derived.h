@@ -222,10 +222,7 @@ struct Derived {
   void findBodyPairs(const WorldState<S>& world);
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template struct Derived<double>;
-#endif
-extern template struct Derived<Fixed>;
-extern template struct Derived<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template struct Derived<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -52,10 +52,7 @@ std::uint64_t SavedSpace<S>::bytes() const {
          (derived_ == nullptr ? 0 : derived_->bytes());
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class SavedSpace<double>;
-#endif
-template class SavedSpace<Fixed>;
-template class SavedSpace<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class SavedSpace<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

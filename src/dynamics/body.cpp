@@ -406,10 +406,7 @@ S Body<S>::kineticEnergy() const {
   return saturated<S>(twice * toScaled(ratio<S>(1, 2)));
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class Body<double>;
-#endif
-template class Body<Fixed>;
-template class Body<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class Body<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

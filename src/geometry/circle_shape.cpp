@@ -58,31 +58,14 @@ void CircleShape<S>::setOffset(const Vector<S>& offset) {
   assign(shape_, this->radius(), offset);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class CircleShape<double>;
-template Shape<double> circleShape<double>(BodyId, double, const Vector<double>&);
-template Scaled<double> scaledMomentForCircle<double>(Scaled<double>, double, double, const Vector<double>&);
-template double momentForCircle<double>(double, double, double, const Vector<double>&);
-template Scaled<double> scaledAreaForCircle<double>(double, double);
-template double areaForCircle<double>(double, double);
-template ShapeMassInfo<double> circleMassInfo<double>(double, double, const Vector<double>&);
-#endif
-template class CircleShape<Fixed>;
-template Shape<Fixed> circleShape<Fixed>(BodyId, Fixed, const Vector<Fixed>&);
-template Scaled<Fixed> scaledMomentForCircle<Fixed>(Scaled<Fixed>, Fixed, Fixed, const Vector<Fixed>&);
-template Fixed momentForCircle<Fixed>(Fixed, Fixed, Fixed, const Vector<Fixed>&);
-template Scaled<Fixed> scaledAreaForCircle<Fixed>(Fixed, Fixed);
-template Fixed areaForCircle<Fixed>(Fixed, Fixed);
-template ShapeMassInfo<Fixed> circleMassInfo<Fixed>(Fixed, Fixed, const Vector<Fixed>&);
-template class CircleShape<CheckedFixed>;
-template Shape<CheckedFixed> circleShape<CheckedFixed>(BodyId, CheckedFixed, const Vector<CheckedFixed>&);
-template Scaled<CheckedFixed> scaledMomentForCircle<CheckedFixed>(Scaled<CheckedFixed>, CheckedFixed,
-                                                                  CheckedFixed, const Vector<CheckedFixed>&);
-template CheckedFixed momentForCircle<CheckedFixed>(CheckedFixed, CheckedFixed, CheckedFixed,
-                                                    const Vector<CheckedFixed>&);
-template Scaled<CheckedFixed> scaledAreaForCircle<CheckedFixed>(CheckedFixed, CheckedFixed);
-template CheckedFixed areaForCircle<CheckedFixed>(CheckedFixed, CheckedFixed);
-template ShapeMassInfo<CheckedFixed> circleMassInfo<CheckedFixed>(CheckedFixed, CheckedFixed,
-                                                                  const Vector<CheckedFixed>&);
+#define SAMESTEP_EACH_SCALAR                                                      \
+  template class CircleShape<S>;                                                  \
+  template Shape<S> circleShape<S>(BodyId, S, const Vector<S>&);                  \
+  template Scaled<S> scaledMomentForCircle<S>(Scaled<S>, S, S, const Vector<S>&); \
+  template S momentForCircle<S>(S, S, S, const Vector<S>&);                       \
+  template Scaled<S> scaledAreaForCircle<S>(S, S);                                \
+  template S areaForCircle<S>(S, S);                                              \
+  template ShapeMassInfo<S> circleMassInfo<S>(S, S, const Vector<S>&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

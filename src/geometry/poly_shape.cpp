@@ -211,62 +211,21 @@ void PolyShape<S>::setRadius(S radius) {
   assign(shape_, std::as_const(shape_).vertices(), radius);
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class PolyShape<double>;
-template Shape<double> polyShape<double>(BodyId, std::span<const Vector<double>>, const Transform<double>&,
-                                         double);
-template Shape<double> polyShapeRaw<double>(BodyId, std::span<const Vector<double>>, double);
-template Shape<double> boxShape<double>(BodyId, double, double, double);
-template Shape<double> boxShape<double>(BodyId, const BB<double>&, double);
-template Scaled<double> scaledMomentForPoly<double>(Scaled<double>, std::span<const Vector<double>>,
-                                                    const Vector<double>&);
-template double momentForPoly<double>(double, std::span<const Vector<double>>, const Vector<double>&, double);
-template Scaled<double> scaledMomentForBox<double>(Scaled<double>, double, double);
-template double momentForBox<double>(double, double, double);
-template double momentForBox<double>(double, const BB<double>&);
-template Scaled<double> scaledAreaForPoly<double>(std::span<const Vector<double>>, double);
-template double areaForPoly<double>(std::span<const Vector<double>>, double);
-template Vector<double> centroidForPoly<double>(std::span<const Vector<double>>);
-template ShapeMassInfo<double> polyMassInfo<double>(double, std::span<const Vector<double>>, double);
-#endif
-template class PolyShape<Fixed>;
-template Shape<Fixed> polyShape<Fixed>(BodyId, std::span<const Vector<Fixed>>, const Transform<Fixed>&,
-                                       Fixed);
-template Shape<Fixed> polyShapeRaw<Fixed>(BodyId, std::span<const Vector<Fixed>>, Fixed);
-template Shape<Fixed> boxShape<Fixed>(BodyId, Fixed, Fixed, Fixed);
-template Shape<Fixed> boxShape<Fixed>(BodyId, const BB<Fixed>&, Fixed);
-template Scaled<Fixed> scaledMomentForPoly<Fixed>(Scaled<Fixed>, std::span<const Vector<Fixed>>,
-                                                  const Vector<Fixed>&);
-template Fixed momentForPoly<Fixed>(Fixed, std::span<const Vector<Fixed>>, const Vector<Fixed>&, Fixed);
-template Scaled<Fixed> scaledMomentForBox<Fixed>(Scaled<Fixed>, Fixed, Fixed);
-template Fixed momentForBox<Fixed>(Fixed, Fixed, Fixed);
-template Fixed momentForBox<Fixed>(Fixed, const BB<Fixed>&);
-template Scaled<Fixed> scaledAreaForPoly<Fixed>(std::span<const Vector<Fixed>>, Fixed);
-template Fixed areaForPoly<Fixed>(std::span<const Vector<Fixed>>, Fixed);
-template Vector<Fixed> centroidForPoly<Fixed>(std::span<const Vector<Fixed>>);
-template ShapeMassInfo<Fixed> polyMassInfo<Fixed>(Fixed, std::span<const Vector<Fixed>>, Fixed);
-template class PolyShape<CheckedFixed>;
-template Shape<CheckedFixed> polyShape<CheckedFixed>(BodyId, std::span<const Vector<CheckedFixed>>,
-                                                     const Transform<CheckedFixed>&, CheckedFixed);
-template Shape<CheckedFixed> polyShapeRaw<CheckedFixed>(BodyId, std::span<const Vector<CheckedFixed>>,
-                                                        CheckedFixed);
-template Shape<CheckedFixed> boxShape<CheckedFixed>(BodyId, CheckedFixed, CheckedFixed, CheckedFixed);
-template Shape<CheckedFixed> boxShape<CheckedFixed>(BodyId, const BB<CheckedFixed>&, CheckedFixed);
-template Scaled<CheckedFixed> scaledMomentForPoly<CheckedFixed>(Scaled<CheckedFixed>,
-                                                                std::span<const Vector<CheckedFixed>>,
-                                                                const Vector<CheckedFixed>&);
-template CheckedFixed momentForPoly<CheckedFixed>(CheckedFixed, std::span<const Vector<CheckedFixed>>,
-                                                  const Vector<CheckedFixed>&, CheckedFixed);
-template Scaled<CheckedFixed> scaledMomentForBox<CheckedFixed>(Scaled<CheckedFixed>, CheckedFixed,
-                                                               CheckedFixed);
-template CheckedFixed momentForBox<CheckedFixed>(CheckedFixed, CheckedFixed, CheckedFixed);
-template CheckedFixed momentForBox<CheckedFixed>(CheckedFixed, const BB<CheckedFixed>&);
-template Scaled<CheckedFixed> scaledAreaForPoly<CheckedFixed>(std::span<const Vector<CheckedFixed>>,
-                                                              CheckedFixed);
-template CheckedFixed areaForPoly<CheckedFixed>(std::span<const Vector<CheckedFixed>>, CheckedFixed);
-template Vector<CheckedFixed> centroidForPoly<CheckedFixed>(std::span<const Vector<CheckedFixed>>);
-template ShapeMassInfo<CheckedFixed> polyMassInfo<CheckedFixed>(CheckedFixed,
-                                                                std::span<const Vector<CheckedFixed>>,
-                                                                CheckedFixed);
+#define SAMESTEP_EACH_SCALAR                                                                          \
+  template class PolyShape<S>;                                                                        \
+  template Shape<S> polyShape<S>(BodyId, std::span<const Vector<S>>, const Transform<S>&, S);         \
+  template Shape<S> polyShapeRaw<S>(BodyId, std::span<const Vector<S>>, S);                           \
+  template Shape<S> boxShape<S>(BodyId, S, S, S);                                                     \
+  template Shape<S> boxShape<S>(BodyId, const BB<S>&, S);                                             \
+  template Scaled<S> scaledMomentForPoly<S>(Scaled<S>, std::span<const Vector<S>>, const Vector<S>&); \
+  template S momentForPoly<S>(S, std::span<const Vector<S>>, const Vector<S>&, S);                    \
+  template Scaled<S> scaledMomentForBox<S>(Scaled<S>, S, S);                                          \
+  template S momentForBox<S>(S, S, S);                                                                \
+  template S momentForBox<S>(S, const BB<S>&);                                                        \
+  template Scaled<S> scaledAreaForPoly<S>(std::span<const Vector<S>>, S);                             \
+  template S areaForPoly<S>(std::span<const Vector<S>>, S);                                           \
+  template Vector<S> centroidForPoly<S>(std::span<const Vector<S>>);                                  \
+  template ShapeMassInfo<S> polyMassInfo<S>(S, std::span<const Vector<S>>, S);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

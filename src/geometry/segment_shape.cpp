@@ -78,39 +78,14 @@ void SegmentShape<S>::setRadius(S radius) {
   setGeometry(shape_, this->a(), this->b(), radius, this->tangentA(), this->tangentB());
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class SegmentShape<double>;
-template Shape<double> segmentShape<double>(BodyId, const Vector<double>&, const Vector<double>&, double);
-template Scaled<double> scaledMomentForSegment<double>(Scaled<double>, const Vector<double>&,
-                                                       const Vector<double>&, double);
-template double momentForSegment<double>(double, const Vector<double>&, const Vector<double>&, double);
-template Scaled<double> scaledAreaForSegment<double>(const Vector<double>&, const Vector<double>&, double);
-template double areaForSegment<double>(const Vector<double>&, const Vector<double>&, double);
-template ShapeMassInfo<double> segmentMassInfo<double>(double, const Vector<double>&, const Vector<double>&,
-                                                       double);
-#endif
-template class SegmentShape<Fixed>;
-template Shape<Fixed> segmentShape<Fixed>(BodyId, const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
-template Scaled<Fixed> scaledMomentForSegment<Fixed>(Scaled<Fixed>, const Vector<Fixed>&,
-                                                     const Vector<Fixed>&, Fixed);
-template Fixed momentForSegment<Fixed>(Fixed, const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
-template Scaled<Fixed> scaledAreaForSegment<Fixed>(const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
-template Fixed areaForSegment<Fixed>(const Vector<Fixed>&, const Vector<Fixed>&, Fixed);
-template ShapeMassInfo<Fixed> segmentMassInfo<Fixed>(Fixed, const Vector<Fixed>&, const Vector<Fixed>&,
-                                                     Fixed);
-template class SegmentShape<CheckedFixed>;
-template Shape<CheckedFixed> segmentShape<CheckedFixed>(BodyId, const Vector<CheckedFixed>&,
-                                                        const Vector<CheckedFixed>&, CheckedFixed);
-template Scaled<CheckedFixed> scaledMomentForSegment<CheckedFixed>(Scaled<CheckedFixed>,
-                                                                   const Vector<CheckedFixed>&,
-                                                                   const Vector<CheckedFixed>&, CheckedFixed);
-template CheckedFixed momentForSegment<CheckedFixed>(CheckedFixed, const Vector<CheckedFixed>&,
-                                                     const Vector<CheckedFixed>&, CheckedFixed);
-template Scaled<CheckedFixed> scaledAreaForSegment<CheckedFixed>(const Vector<CheckedFixed>&,
-                                                                 const Vector<CheckedFixed>&, CheckedFixed);
-template CheckedFixed areaForSegment<CheckedFixed>(const Vector<CheckedFixed>&, const Vector<CheckedFixed>&,
-                                                   CheckedFixed);
-template ShapeMassInfo<CheckedFixed> segmentMassInfo<CheckedFixed>(CheckedFixed, const Vector<CheckedFixed>&,
-                                                                   const Vector<CheckedFixed>&, CheckedFixed);
+#define SAMESTEP_EACH_SCALAR                                                                      \
+  template class SegmentShape<S>;                                                                 \
+  template Shape<S> segmentShape<S>(BodyId, const Vector<S>&, const Vector<S>&, S);               \
+  template Scaled<S> scaledMomentForSegment<S>(Scaled<S>, const Vector<S>&, const Vector<S>&, S); \
+  template S momentForSegment<S>(S, const Vector<S>&, const Vector<S>&, S);                       \
+  template Scaled<S> scaledAreaForSegment<S>(const Vector<S>&, const Vector<S>&, S);              \
+  template S areaForSegment<S>(const Vector<S>&, const Vector<S>&, S);                            \
+  template ShapeMassInfo<S> segmentMassInfo<S>(S, const Vector<S>&, const Vector<S>&, S);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

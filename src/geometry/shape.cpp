@@ -298,33 +298,14 @@ BB<S> boundingBox(const Shape<S>& shape, const Transform<S>& pose) {
   return Placement<S>(shape, pose)->box;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class VertexList<double>;
-template class Shape<double>;
-template int planeCount<double>(const Shape<double>&);
-template void prepare<double>(const Shape<double>&, Plane<double>*, PlacedShape<double>&);
-template BB<double> place<double>(const Transform<double>&, PlacedShape<double>&);
-template BB<double> place<double>(const Shape<double>&, const Transform<double>&, Plane<double>*,
-                                  PlacedShape<double>&);
-template BB<double> boundingBox<double>(const Shape<double>&, const Transform<double>&);
-#endif
-template class VertexList<Fixed>;
-template class Shape<Fixed>;
-template int planeCount<Fixed>(const Shape<Fixed>&);
-template void prepare<Fixed>(const Shape<Fixed>&, Plane<Fixed>*, PlacedShape<Fixed>&);
-template BB<Fixed> place<Fixed>(const Transform<Fixed>&, PlacedShape<Fixed>&);
-template BB<Fixed> place<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&, Plane<Fixed>*,
-                                PlacedShape<Fixed>&);
-template BB<Fixed> boundingBox<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&);
-template class VertexList<CheckedFixed>;
-template class Shape<CheckedFixed>;
-template int planeCount<CheckedFixed>(const Shape<CheckedFixed>&);
-template void prepare<CheckedFixed>(const Shape<CheckedFixed>&, Plane<CheckedFixed>*,
-                                    PlacedShape<CheckedFixed>&);
-template BB<CheckedFixed> place<CheckedFixed>(const Transform<CheckedFixed>&, PlacedShape<CheckedFixed>&);
-template BB<CheckedFixed> place<CheckedFixed>(const Shape<CheckedFixed>&, const Transform<CheckedFixed>&,
-                                              Plane<CheckedFixed>*, PlacedShape<CheckedFixed>&);
-template BB<CheckedFixed> boundingBox<CheckedFixed>(const Shape<CheckedFixed>&,
-                                                    const Transform<CheckedFixed>&);
+#define SAMESTEP_EACH_SCALAR                                                                 \
+  template class VertexList<S>;                                                              \
+  template class Shape<S>;                                                                   \
+  template int planeCount<S>(const Shape<S>&);                                               \
+  template void prepare<S>(const Shape<S>&, Plane<S>*, PlacedShape<S>&);                     \
+  template BB<S> place<S>(const Transform<S>&, PlacedShape<S>&);                             \
+  template BB<S> place<S>(const Shape<S>&, const Transform<S>&, Plane<S>*, PlacedShape<S>&); \
+  template BB<S> boundingBox<S>(const Shape<S>&, const Transform<S>&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -159,18 +159,9 @@ SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a
   return best;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template PointQueryInfo<double> pointQuery<double>(const PlacedShape<double>&, const Vector<double>&);
-template SegmentQueryInfo<double> segmentQuery<double>(const PlacedShape<double>&, const Vector<double>&,
-                                                       const Vector<double>&, double);
-#endif
-template PointQueryInfo<Fixed> pointQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&);
-template SegmentQueryInfo<Fixed> segmentQuery<Fixed>(const PlacedShape<Fixed>&, const Vector<Fixed>&,
-                                                     const Vector<Fixed>&, Fixed);
-template PointQueryInfo<CheckedFixed> pointQuery<CheckedFixed>(const PlacedShape<CheckedFixed>&,
-                                                               const Vector<CheckedFixed>&);
-template SegmentQueryInfo<CheckedFixed> segmentQuery<CheckedFixed>(const PlacedShape<CheckedFixed>&,
-                                                                   const Vector<CheckedFixed>&,
-                                                                   const Vector<CheckedFixed>&, CheckedFixed);
+#define SAMESTEP_EACH_SCALAR                                                         \
+  template PointQueryInfo<S> pointQuery<S>(const PlacedShape<S>&, const Vector<S>&); \
+  template SegmentQueryInfo<S> segmentQuery<S>(const PlacedShape<S>&, const Vector<S>&, const Vector<S>&, S);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

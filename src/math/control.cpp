@@ -124,14 +124,9 @@ int convexHull(std::span<const Vector<S>> points, std::span<Vector<S>> result, i
   return 1 + reduce<S>(result.subspan(2, points.size() - 2), a, b, a, tolerance, result.subspan(1));
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template LoopIndices loopIndices<double>(std::span<const Vector<double>>);
-template int convexHull<double>(std::span<const Vector<double>>, std::span<Vector<double>>, int*, double);
-#endif
-template LoopIndices loopIndices<Fixed>(std::span<const Vector<Fixed>>);
-template LoopIndices loopIndices<CheckedFixed>(std::span<const Vector<CheckedFixed>>);
-template int convexHull<Fixed>(std::span<const Vector<Fixed>>, std::span<Vector<Fixed>>, int*, Fixed);
-template int convexHull<CheckedFixed>(std::span<const Vector<CheckedFixed>>, std::span<Vector<CheckedFixed>>,
-                                      int*, CheckedFixed);
+#define SAMESTEP_EACH_SCALAR                                       \
+  template LoopIndices loopIndices<S>(std::span<const Vector<S>>); \
+  template int convexHull<S>(std::span<const Vector<S>>, std::span<Vector<S>>, int*, S);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

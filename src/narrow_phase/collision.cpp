@@ -230,28 +230,13 @@ ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, c
   return set;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template CollisionInfo<double> collide<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                               CollisionId, CollisionStats*, double);
-template ContactPointSet<double> shapesCollide<double>(const Shape<double>&, const Transform<double>&,
-                                                       const Shape<double>&, const Transform<double>&);
-template void collideSorted<double>(const PlacedShape<double>&, const PlacedShape<double>&,
-                                    CollisionInfo<double>&, CollisionStats*, double);
-#endif
-template CollisionInfo<Fixed> collide<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
-                                             CollisionId, CollisionStats*, Fixed);
-template ContactPointSet<Fixed> shapesCollide<Fixed>(const Shape<Fixed>&, const Transform<Fixed>&,
-                                                     const Shape<Fixed>&, const Transform<Fixed>&);
-template void collideSorted<Fixed>(const PlacedShape<Fixed>&, const PlacedShape<Fixed>&,
-                                   CollisionInfo<Fixed>&, CollisionStats*, Fixed);
-template CollisionInfo<CheckedFixed> collide<CheckedFixed>(const PlacedShape<CheckedFixed>&,
-                                                           const PlacedShape<CheckedFixed>&, CollisionId,
-                                                           CollisionStats*, CheckedFixed);
-template ContactPointSet<CheckedFixed> shapesCollide<CheckedFixed>(const Shape<CheckedFixed>&,
-                                                                   const Transform<CheckedFixed>&,
-                                                                   const Shape<CheckedFixed>&,
-                                                                   const Transform<CheckedFixed>&);
-template void collideSorted<CheckedFixed>(const PlacedShape<CheckedFixed>&, const PlacedShape<CheckedFixed>&,
-                                          CollisionInfo<CheckedFixed>&, CollisionStats*, CheckedFixed);
+#define SAMESTEP_EACH_SCALAR                                                                          \
+  template CollisionInfo<S> collide<S>(const PlacedShape<S>&, const PlacedShape<S>&, CollisionId,     \
+                                       CollisionStats*, S);                                           \
+  template ContactPointSet<S> shapesCollide<S>(const Shape<S>&, const Transform<S>&, const Shape<S>&, \
+                                               const Transform<S>&);                                  \
+  template void collideSorted<S>(const PlacedShape<S>&, const PlacedShape<S>&, CollisionInfo<S>&,     \
+                                 CollisionStats*, S);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -146,17 +146,9 @@ ClosestPoints<S> epa(const SupportPair<S>& pair, const MinkowskiPoint<S>& v0, co
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template ClosestPoints<double> epa<double>(const SupportPair<double>&, const MinkowskiPoint<double>&,
-                                           const MinkowskiPoint<double>&, const MinkowskiPoint<double>&,
-                                           CollisionStats*);
-#endif
-template ClosestPoints<Fixed> epa<Fixed>(const SupportPair<Fixed>&, const MinkowskiPoint<Fixed>&,
-                                         const MinkowskiPoint<Fixed>&, const MinkowskiPoint<Fixed>&,
-                                         CollisionStats*);
-template ClosestPoints<CheckedFixed> epa<CheckedFixed>(const SupportPair<CheckedFixed>&,
-                                                       const MinkowskiPoint<CheckedFixed>&,
-                                                       const MinkowskiPoint<CheckedFixed>&,
-                                                       const MinkowskiPoint<CheckedFixed>&, CollisionStats*);
+#define SAMESTEP_EACH_SCALAR                                                        \
+  template ClosestPoints<S> epa<S>(const SupportPair<S>&, const MinkowskiPoint<S>&, \
+                                   const MinkowskiPoint<S>&, const MinkowskiPoint<S>&, CollisionStats*);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

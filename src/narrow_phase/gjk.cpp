@@ -207,13 +207,8 @@ ClosestPoints<S> gjk(const SupportPair<S>& pair, std::uint32_t start, const Vect
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template ClosestPoints<double> gjk<double>(const SupportPair<double>&, std::uint32_t, const Vector<double>&,
-                                           CollisionStats*);
-#endif
-template ClosestPoints<Fixed> gjk<Fixed>(const SupportPair<Fixed>&, std::uint32_t, const Vector<Fixed>&,
-                                         CollisionStats*);
-template ClosestPoints<CheckedFixed> gjk<CheckedFixed>(const SupportPair<CheckedFixed>&, std::uint32_t,
-                                                       const Vector<CheckedFixed>&, CollisionStats*);
+#define SAMESTEP_EACH_SCALAR \
+  template ClosestPoints<S> gjk<S>(const SupportPair<S>&, std::uint32_t, const Vector<S>&, CollisionStats*);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

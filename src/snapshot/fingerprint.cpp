@@ -142,10 +142,7 @@ std::uint64_t fingerprint() {
   return sink.finish();
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template std::uint64_t fingerprint<double>();
-#endif
-template std::uint64_t fingerprint<Fixed>();
-template std::uint64_t fingerprint<CheckedFixed>();
+#define SAMESTEP_EACH_SCALAR template std::uint64_t fingerprint<S>();
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

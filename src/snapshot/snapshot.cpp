@@ -125,16 +125,9 @@ void loadSnapshot(Space<S>& space, std::span<const std::uint8_t> bytes, OtherRev
   space.adopt(readSnapshot<S>(bytes, otherRevision, limits));
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template std::uint64_t saveSnapshot<double>(const Space<double>&, std::span<std::uint8_t>);
-template void loadSnapshot<double>(Space<double>&, std::span<const std::uint8_t>, OtherRevision,
-                                   const WorldLimits&);
-#endif
-template std::uint64_t saveSnapshot<Fixed>(const Space<Fixed>&, std::span<std::uint8_t>);
-template void loadSnapshot<Fixed>(Space<Fixed>&, std::span<const std::uint8_t>, OtherRevision,
-                                  const WorldLimits&);
-template std::uint64_t saveSnapshot<CheckedFixed>(const Space<CheckedFixed>&, std::span<std::uint8_t>);
-template void loadSnapshot<CheckedFixed>(Space<CheckedFixed>&, std::span<const std::uint8_t>, OtherRevision,
-                                         const WorldLimits&);
+#define SAMESTEP_EACH_SCALAR                                                        \
+  template std::uint64_t saveSnapshot<S>(const Space<S>&, std::span<std::uint8_t>); \
+  template void loadSnapshot<S>(Space<S>&, std::span<const std::uint8_t>, OtherRevision, const WorldLimits&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -288,22 +288,11 @@ const char* flawOf(const WorldState<S>& world, const WorldLimits& limits) {
   return flaw;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template std::uint64_t encodeWorld<double>(const WorldState<double>&, std::span<std::uint8_t>);
-template void encodeWorld<double>(const WorldState<double>&, std::vector<std::uint8_t>&);
-template WorldState<double> decodeWorld<double>(std::span<const std::uint8_t>, std::uint64_t&,
-                                                const WorldLimits&);
-template const char* flawOf<double>(const WorldState<double>&, const WorldLimits&);
-#endif
-template std::uint64_t encodeWorld<Fixed>(const WorldState<Fixed>&, std::span<std::uint8_t>);
-template void encodeWorld<Fixed>(const WorldState<Fixed>&, std::vector<std::uint8_t>&);
-template WorldState<Fixed> decodeWorld<Fixed>(std::span<const std::uint8_t>, std::uint64_t&,
-                                              const WorldLimits&);
-template const char* flawOf<Fixed>(const WorldState<Fixed>&, const WorldLimits&);
-template std::uint64_t encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&, std::span<std::uint8_t>);
-template void encodeWorld<CheckedFixed>(const WorldState<CheckedFixed>&, std::vector<std::uint8_t>&);
-template WorldState<CheckedFixed> decodeWorld<CheckedFixed>(std::span<const std::uint8_t>, std::uint64_t&,
-                                                            const WorldLimits&);
-template const char* flawOf<CheckedFixed>(const WorldState<CheckedFixed>&, const WorldLimits&);
+#define SAMESTEP_EACH_SCALAR                                                                                \
+  template std::uint64_t encodeWorld<S>(const WorldState<S>&, std::span<std::uint8_t>);                     \
+  template void encodeWorld<S>(const WorldState<S>&, std::vector<std::uint8_t>&);                           \
+  template WorldState<S> decodeWorld<S>(std::span<const std::uint8_t>, std::uint64_t&, const WorldLimits&); \
+  template const char* flawOf<S>(const WorldState<S>&, const WorldLimits&);
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -225,10 +225,7 @@ void Objects<S>::forgetManifolds(Context& world, ShapeId id) {
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template struct Objects<double>;
-#endif
-template struct Objects<Fixed>;
-template struct Objects<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template struct Objects<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

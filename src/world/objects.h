@@ -40,10 +40,7 @@ struct Objects {
   static void forgetManifolds(Context& world, ShapeId id);
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template struct Objects<double>;
-#endif
-extern template struct Objects<Fixed>;
-extern template struct Objects<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template struct Objects<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -71,10 +71,7 @@ void Queries<S>::box(const BB<S>& box, const ShapeFilter& filter, std::vector<Sh
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template struct Queries<double>;
-#endif
-template struct Queries<Fixed>;
-template struct Queries<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template struct Queries<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -26,10 +26,7 @@ struct Queries {
   void collectFound(Collect&& collect);
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template struct Queries<double>;
-#endif
-extern template struct Queries<Fixed>;
-extern template struct Queries<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template struct Queries<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -704,10 +704,7 @@ std::uint64_t Space<S>::hash(ShapeId id) const {
   return hashOf(shape(id));
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class Space<double>;
-#endif
-template class Space<Fixed>;
-template class Space<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class Space<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -115,10 +115,7 @@ void Step<S>::refuse(StepContext<S>& step) {
   fail<Fault::TooManyPairs>();
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template struct Step<double>;
-#endif
-template struct Step<Fixed>;
-template struct Step<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template struct Step<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -57,10 +57,7 @@ struct Step {
   SlotMap<Body<S>, BodyId> bodiesBefore_;  // Of a step that may be refused after bodies moved.
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template struct Step<double>;
-#endif
-extern template struct Step<Fixed>;
-extern template struct Step<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template struct Step<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

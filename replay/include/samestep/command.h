@@ -166,11 +166,4 @@ struct Wiring {
 template <Scalar S>
 BodyId apply(Space<S>& space, const Command<S>& command, const Wiring<S>& wiring = {});
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template BodyId apply<double>(Space<double>&, const Command<double>&, const Wiring<double>&);
-#endif
-extern template BodyId apply<Fixed>(Space<Fixed>&, const Command<Fixed>&, const Wiring<Fixed>&);
-extern template BodyId apply<CheckedFixed>(Space<CheckedFixed>&, const Command<CheckedFixed>&,
-                                           const Wiring<CheckedFixed>&);
-
 }  // namespace samestep

@@ -14,10 +14,4 @@ namespace samestep {
 template <Scalar S>
 std::string drawSvg(const Space<S>& space, const std::string& caption);
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template std::string drawSvg<double>(const Space<double>&, const std::string&);
-#endif
-extern template std::string drawSvg<Fixed>(const Space<Fixed>&, const std::string&);
-extern template std::string drawSvg<CheckedFixed>(const Space<CheckedFixed>&, const std::string&);
-
 }  // namespace samestep

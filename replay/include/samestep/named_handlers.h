@@ -36,13 +36,4 @@ void registerNamedHandlers(Space<S>& space);
 template <Scalar S>
 Wiring<S> namedHandlerWiring();
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template void registerNamedHandlers<double>(Space<double>&);
-extern template Wiring<double> namedHandlerWiring<double>();
-#endif
-extern template void registerNamedHandlers<Fixed>(Space<Fixed>&);
-extern template Wiring<Fixed> namedHandlerWiring<Fixed>();
-extern template void registerNamedHandlers<CheckedFixed>(Space<CheckedFixed>&);
-extern template Wiring<CheckedFixed> namedHandlerWiring<CheckedFixed>();
-
 }  // namespace samestep

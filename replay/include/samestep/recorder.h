@@ -63,10 +63,7 @@ class Recorder {
   Impl* impl_;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class Recorder<double>;
-#endif
-extern template class Recorder<Fixed>;
-extern template class Recorder<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class Recorder<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

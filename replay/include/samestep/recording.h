@@ -68,10 +68,7 @@ class RecordingReader {
   Command<S> command_;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class RecordingReader<double>;
-#endif
-extern template class RecordingReader<Fixed>;
-extern template class RecordingReader<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class RecordingReader<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

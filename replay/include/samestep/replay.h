@@ -48,10 +48,7 @@ class Replay {
   bool ended_ = false;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class Replay<double>;
-#endif
-extern template class Replay<Fixed>;
-extern template class Replay<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class Replay<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -34,17 +34,4 @@ ReplayDifference findDifference(std::span<const std::uint8_t> a, std::span<const
                                 const Wiring<S>& wiring, std::uint32_t mostFields,
                                 const VerifyOptions& options = {});
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template ReplayDifference findDifference<double>(std::span<const std::uint8_t>,
-                                                        std::span<const std::uint8_t>, const Wiring<double>&,
-                                                        std::uint32_t, const VerifyOptions&);
-#endif
-extern template ReplayDifference findDifference<Fixed>(std::span<const std::uint8_t>,
-                                                       std::span<const std::uint8_t>, const Wiring<Fixed>&,
-                                                       std::uint32_t, const VerifyOptions&);
-extern template ReplayDifference findDifference<CheckedFixed>(std::span<const std::uint8_t>,
-                                                              std::span<const std::uint8_t>,
-                                                              const Wiring<CheckedFixed>&, std::uint32_t,
-                                                              const VerifyOptions&);
-
 }  // namespace samestep

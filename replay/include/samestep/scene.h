@@ -120,10 +120,7 @@ class Scene {
   std::uint64_t next_ = 0;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class Scene<double>;
-#endif
-extern template class Scene<Fixed>;
-extern template class Scene<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class Scene<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

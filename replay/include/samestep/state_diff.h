@@ -27,17 +27,4 @@ std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldStat
 template <Scalar S>
 std::string describe(const Command<S>& command);
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template std::vector<FieldDifference> differences<double>(const WorldState<double>&,
-                                                                 const WorldState<double>&, std::uint32_t);
-extern template std::string describe<double>(const Command<double>&);
-#endif
-extern template std::vector<FieldDifference> differences<Fixed>(const WorldState<Fixed>&,
-                                                                const WorldState<Fixed>&, std::uint32_t);
-extern template std::string describe<Fixed>(const Command<Fixed>&);
-extern template std::vector<FieldDifference> differences<CheckedFixed>(const WorldState<CheckedFixed>&,
-                                                                       const WorldState<CheckedFixed>&,
-                                                                       std::uint32_t);
-extern template std::string describe<CheckedFixed>(const Command<CheckedFixed>&);
-
 }  // namespace samestep

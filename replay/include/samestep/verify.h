@@ -44,13 +44,4 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring
 /// @throws FormatError also for a scalar that this build lacks
 VerifyResult verify(std::span<const std::uint8_t> bytes, const VerifyOptions& options = {});
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template VerifyResult verify<double>(std::span<const std::uint8_t>, const Wiring<double>&,
-                                            const VerifyOptions&);
-#endif
-extern template VerifyResult verify<Fixed>(std::span<const std::uint8_t>, const Wiring<Fixed>&,
-                                           const VerifyOptions&);
-extern template VerifyResult verify<CheckedFixed>(std::span<const std::uint8_t>, const Wiring<CheckedFixed>&,
-                                                  const VerifyOptions&);
-
 }  // namespace samestep

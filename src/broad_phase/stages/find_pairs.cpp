@@ -160,10 +160,7 @@ void FindPairs<S>::movePairs(WorldState<S>& state, std::uint32_t count) {
   if (newPairs_.size() > 4096 && newPairs_.size() == count) newPairs_ = {};
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class FindPairs<double>;
-#endif
-template class FindPairs<Fixed>;
-template class FindPairs<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class FindPairs<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

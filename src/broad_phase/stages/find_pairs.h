@@ -47,10 +47,7 @@ class FindPairs {
   std::vector<PairRun> pairRuns_;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class FindPairs<double>;
-#endif
-extern template class FindPairs<Fixed>;
-extern template class FindPairs<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class FindPairs<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -39,10 +39,7 @@ void PlaceShapes<S>::placeTogether(StepContext<S>& step) {
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class PlaceShapes<double>;
-#endif
-template class PlaceShapes<Fixed>;
-template class PlaceShapes<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class PlaceShapes<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -21,10 +21,7 @@ class PlaceShapes {
   std::vector<std::uint8_t> placedAnew_;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class PlaceShapes<double>;
-#endif
-extern template class PlaceShapes<Fixed>;
-extern template class PlaceShapes<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class PlaceShapes<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -153,10 +153,7 @@ void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape
   context.derived.bodyPairs.known = false;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template struct ContactCallbacks<double>;
-#endif
-template struct ContactCallbacks<Fixed>;
-template struct ContactCallbacks<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template struct ContactCallbacks<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -54,10 +54,7 @@ struct ContactCallbacks {
   static const CollisionHandler<S>* wildcardFor(const Context& context, const Shape<S>& shape);
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template struct ContactCallbacks<double>;
-#endif
-extern template struct ContactCallbacks<Fixed>;
-extern template struct ContactCallbacks<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template struct ContactCallbacks<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

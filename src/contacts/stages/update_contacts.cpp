@@ -182,10 +182,7 @@ void UpdateContacts<S>::dropApart(StepContext<S>& step, const std::uint8_t* over
   step.derived.bodyPairs.known = false;
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class UpdateContacts<double>;
-#endif
-template class UpdateContacts<Fixed>;
-template class UpdateContacts<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class UpdateContacts<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -35,10 +35,7 @@ class UpdateContacts {
   bool someLeft_ = false;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class UpdateContacts<double>;
-#endif
-extern template class UpdateContacts<Fixed>;
-extern template class UpdateContacts<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class UpdateContacts<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

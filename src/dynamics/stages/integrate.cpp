@@ -78,10 +78,7 @@ void Integrate<S>::velocities(StepContext<S>& step) {
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template struct Integrate<double>;
-#endif
-template struct Integrate<Fixed>;
-template struct Integrate<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template struct Integrate<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

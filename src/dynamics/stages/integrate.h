@@ -25,10 +25,7 @@ struct Integrate {
   static void callVelocityFunc(StepContext<S>& step, std::uint32_t index, S kept);
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template struct Integrate<double>;
-#endif
-extern template struct Integrate<Fixed>;
-extern template struct Integrate<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template struct Integrate<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

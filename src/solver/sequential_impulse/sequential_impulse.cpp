@@ -117,10 +117,7 @@ void ImpulseSolver<S>::iterate() {
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template struct ImpulseSolver<double>;
-#endif
-template struct ImpulseSolver<Fixed>;
-template struct ImpulseSolver<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template struct ImpulseSolver<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -44,10 +44,7 @@ struct ImpulseSolver {
   void iterate();
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template struct ImpulseSolver<double>;
-#endif
-extern template struct ImpulseSolver<Fixed>;
-extern template struct ImpulseSolver<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template struct ImpulseSolver<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

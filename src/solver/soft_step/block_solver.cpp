@@ -490,8 +490,10 @@ template class BlockSolver<double, PlainNumbers<double, false>>;
 template class BlockSolver<Fixed, PlainNumbers<Fixed, true>>;
 template class BlockSolver<Fixed, WideNumbers>;
 template class BlockSolver<Fixed, FastNumbers>;
+#ifndef SAMESTEP_NO_CHECKED
 template class BlockSolver<CheckedFixed, PlainNumbers<CheckedFixed, true>>;
 template class BlockSolver<CheckedFixed, WideNumbers>;
 template class BlockSolver<CheckedFixed, FastNumbers>;
+#endif
 
 }  // namespace samestep

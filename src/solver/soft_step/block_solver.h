@@ -96,8 +96,10 @@ extern template class BlockSolver<double, PlainNumbers<double, false>>;
 extern template class BlockSolver<Fixed, PlainNumbers<Fixed, true>>;
 extern template class BlockSolver<Fixed, WideNumbers>;
 extern template class BlockSolver<Fixed, FastNumbers>;
+#ifndef SAMESTEP_NO_CHECKED
 extern template class BlockSolver<CheckedFixed, PlainNumbers<CheckedFixed, true>>;
 extern template class BlockSolver<CheckedFixed, WideNumbers>;
 extern template class BlockSolver<CheckedFixed, FastNumbers>;
+#endif
 
 }  // namespace samestep

@@ -47,13 +47,9 @@ void SoftStep<S>::addFree(const SoftStart<S>& start) {
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template Softness<double> makeSoftness(double, double, double);
-template struct SoftStep<double>;
-#endif
-template Softness<Fixed> makeSoftness(Fixed, Fixed, Fixed);
-template struct SoftStep<Fixed>;
-template Softness<CheckedFixed> makeSoftness(CheckedFixed, CheckedFixed, CheckedFixed);
-template struct SoftStep<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR                  \
+  template Softness<S> makeSoftness(S, S, S); \
+  template struct SoftStep<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -95,10 +95,7 @@ struct SoftStep {
   void addFree(const SoftStart<S>& start);
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template struct SoftStep<double>;
-#endif
-extern template struct SoftStep<Fixed>;
-extern template struct SoftStep<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template struct SoftStep<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -111,10 +111,7 @@ void ImpulseStages<S>::storeVelocities(StepContext<S>& step) {
   }
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class ImpulseStages<double>;
-#endif
-template class ImpulseStages<Fixed>;
-template class ImpulseStages<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class ImpulseStages<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -32,10 +32,7 @@ class ImpulseStages {
   std::vector<std::uint32_t> bodies_;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class ImpulseStages<double>;
-#endif
-extern template class ImpulseStages<Fixed>;
-extern template class ImpulseStages<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class ImpulseStages<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

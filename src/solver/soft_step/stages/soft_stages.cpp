@@ -281,10 +281,7 @@ void SoftStages<S>::finish(StepContext<S>& step, std::uint32_t begin, std::uint3
   });
 }
 
-#ifndef SAMESTEP_FIXED_ONLY
-template class SoftStages<double>;
-#endif
-template class SoftStages<Fixed>;
-template class SoftStages<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR template class SoftStages<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep

@@ -52,10 +52,7 @@ class SoftStages {
   std::vector<std::uint32_t> solverIndex_;
 };
 
-#ifndef SAMESTEP_FIXED_ONLY
-extern template class SoftStages<double>;
-#endif
-extern template class SoftStages<Fixed>;
-extern template class SoftStages<CheckedFixed>;
+#define SAMESTEP_EACH_SCALAR extern template class SoftStages<S>;
+#include <samestep/each_scalar.h>
 
 }  // namespace samestep
