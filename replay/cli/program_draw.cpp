@@ -7,20 +7,13 @@
 #include <samestep/replay.h>
 #include <samestep/scene.h>
 
-#include "cli/program.h"
+#include "cli/commands.h"
 
 namespace samestep::program {
 namespace {
 
-struct Options {
-  std::string source;
-  std::string file;
-  std::string scalar = "fixed";
-  std::uint64_t tick = 0;
-};
-
 template <Scalar S>
-void write(const Options& options, const Space<S>& space) {
+void write(const DrawOptions& options, const Space<S>& space) {
   const std::string caption = options.source + " · tick " + std::to_string(options.tick) + " · " +
                               std::to_string(space.bodyCount()) + " bodies · hash " + hex(space.hash());
   writeFile(options.file, drawSvg(space, caption));
@@ -29,7 +22,7 @@ void write(const Options& options, const Space<S>& space) {
 }
 
 template <Scalar S>
-int drawScene(const Options& options) {
+int drawScene(const DrawOptions& options) {
   Scene<S> scene(SceneSource::find(options.source));
   Progress progress("draw", options.tick);
   while (scene.tick() < options.tick) {
@@ -41,7 +34,7 @@ int drawScene(const Options& options) {
 }
 
 template <Scalar S>
-int drawRecording(const Options& options, std::span<const std::uint8_t> bytes) {
+int drawRecording(const DrawOptions& options, std::span<const std::uint8_t> bytes) {
   Replay<S> replay(bytes, namedHandlerWiring<S>());
   if (options.tick > replay.ticks()) {
     throw Unusable(options.source + ": ends at tick " + std::to_string(replay.ticks()));
@@ -55,7 +48,7 @@ int drawRecording(const Options& options, std::span<const std::uint8_t> bytes) {
   return kGood;
 }
 
-int draw(const Options& options) {
+int draw(const DrawOptions& options) {
   std::error_code error;
   const bool file = std::filesystem::is_regular_file(options.source, error);
   if (!file || options.source.ends_with(".json")) {
@@ -73,16 +66,6 @@ int draw(const Options& options) {
 
 }  // namespace
 
-void addDraw(CLI::App& app, int& result) {
-  CLI::App* word = app.add_subcommand("draw", "Draw one tick of a scene or recording as an SVG picture");
-  auto options = std::make_shared<Options>();
-  word->add_option("SCENE|FILE", options->source, "A scene (name or path) or a recording")->required();
-  word->add_option("--tick", options->tick, "The tick to draw; 0 is the start")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 40))
-      ->required();
-  word->add_option("-o,--output", options->file, "The SVG file to write")->required();
-  addScalarOption(*word, options->scalar);
-  word->callback([options, &result] { result = draw(*options); });
-}
+int drawTick(const DrawOptions& options) { return draw(options); }
 
 }  // namespace samestep::program

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
-#include "cli/program.h"
+#include "cli/commands.h"
 #include "study/envelope.h"
 
 namespace samestep::program {
 namespace {
 
-struct Options {
-  std::string ladder;
-  std::string csv;
-};
-
-int run(const Options& options) {
+int run(const EnvelopeOptions& options) {
   if (!options.csv.empty()) checkWritable(options.csv);
   std::vector<const Ladder*> chosen;
   for (const Ladder& ladder : ladders()) {
@@ -39,16 +34,12 @@ int run(const Options& options) {
 
 }  // namespace
 
-void addEnvelope(CLI::App& app, int& result) {
-  CLI::App* word = app.add_subcommand("envelope",
-                                      "Find how high a stack, how unequal masses, how fast a bullet, which "
-                                      "degenerate shapes each solver bears");
-  auto options = std::make_shared<Options>();
+int climbLadders(const EnvelopeOptions& options) { return run(options); }
+
+std::vector<std::string> ladderNames() {
   std::vector<std::string> names;
   for (const Ladder& ladder : ladders()) names.emplace_back(ladder.name);
-  word->add_option("LADDER", options->ladder, "Climb only this one")->check(CLI::IsMember(names));
-  word->add_option("--csv", options->csv, "Also write the limits to this file");
-  word->callback([options, &result] { result = run(*options); });
+  return names;
 }
 
 }  // namespace samestep::program
