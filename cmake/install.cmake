@@ -7,7 +7,10 @@ foreach(optional samestep_recording samestep_replay samestep_lockstep)
     list(APPEND libraries ${optional})
   endif()
 endforeach()
-install(TARGETS ${libraries} EXPORT samestepTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS ${libraries} EXPORT samestepTargets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 foreach(folder include fixed/include replay/include lockstep/include)
   if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${folder})
     install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")

@@ -44,7 +44,7 @@ else()
   list(APPEND options -D SAMESTEP_SOURCE=${SOURCE})
 endif()
 if(KIND STREQUAL fixed)
-  list(APPEND options -D SAMESTEP_SCALARS=fixed)
+  list(APPEND options -D SAMESTEP_SCALARS=fixed -D BUILD_SHARED_LIBS=ON)
   set(FLAGS_RELEASE "-Ofast")
 endif()
 

@@ -7,6 +7,10 @@
 
 #include "samestep/halves.h"
 
+#if defined(_MSC_VER)
+#error "Samestep needs gcc or clang; on Windows those of MinGW-w64, since MSVC and clang-cl are not supported"
+#endif
+
 #if defined(__SSE2__) && defined(__x86_64__)
 #include <emmintrin.h>
 #endif
