@@ -352,8 +352,10 @@ struct SegmentQueryInfo {
   Vector<S> normal;  ///< The unit normal of the surface there; zero without a hit.
 };
 
-/// Moves a circle of `radius` >= 0 from a to b. One that begins in touch hits at alpha 0, with the gradient
-/// of the point query as the normal.
+/// Moves a circle of `radius` >= 0 from a to b. To touch is to hit, where the way begins, where it ends and
+/// in passing. One that begins in touch or inside hits at alpha 0, with point and gradient of the point query
+/// there: from the very centre of a circle (0, 1), from that of a square the normal of its first edge, of an
+/// unturned one (0, -1).
 template <Scalar S>
 SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a, const Vector<S>& b,
                                  S radius = S(0));

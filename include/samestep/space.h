@@ -367,7 +367,8 @@ class Space {
   /// The shapes within `distance` metres of a point; sensors included.
   void pointQuery(const Vector<S>& point, S distance, const ShapeFilter& filter,
                   std::vector<PointHit<S>>& hits);
-  /// The shapes that a segment of a radius touches.
+  /// The shapes that a segment of a radius touches, at its ends and in passing; in which it begins they are
+  /// hit at alpha 0, see segmentQuery in samestep/shape.h.
   void segmentQuery(const Vector<S>& start, const Vector<S>& end, S radius, const ShapeFilter& filter,
                     std::vector<SegmentHit<S>>& hits);
   /// The shapes whose boxes overlap a box.

@@ -65,6 +65,17 @@ SegmentQueryInfo<S> faceHit(const Vector<S>& a, const Vector<S>& b, S alpha, con
   return {true, alpha, center - normal * above, normal};
 }
 
+/// A moving point against a segment without radius on whose line it goes: it meets the nearer end.
+template <Scalar S>
+void meetEndOn(const Vector<S>& ta, const Vector<S>& tb, const Vector<S>& a, const Vector<S>& b,
+               SegmentQueryInfo<S>& best) {
+  const Vector<S> way = normalize(b - a);
+  const S whole = length(b - a), toA = dot(way, ta - a), toB = dot(way, tb - a);
+  const S along = min(toA, toB);
+  if (whole == S(0) || along < S(0) || along > whole) return;
+  best = {true, along / whole, toA < toB ? ta : tb, -way};
+}
+
 template <Scalar S>
 void touchSegment(const PlacedShape<S>& shape, S moving, const Vector<S>& a, const Vector<S>& b,
                   SegmentQueryInfo<S>& best) {
@@ -73,9 +84,13 @@ void touchSegment(const PlacedShape<S>& shape, S moving, const Vector<S>& a, con
   const Vector<S> facing = sign(exactCross(tb - ta, a - ta)) > 0 ? -n : n;
   const S from = dot(facing, a - ta) - reach, to = dot(facing, b - ta) - reach;
   const Vector<S> way = b - a;
+  const Vector<S> line = tb - ta;
+  if (reach == S(0) && sign(exactCross(line, a - ta)) == 0 && sign(exactCross(line, b - ta)) == 0) {
+    return meetEndOn(ta, tb, a, b, best);
+  }
   const Vector<S> shift = facing * reach;
   const int sideA = sign(exactCross(way, ta + shift - a)), sideB = sign(exactCross(way, tb + shift - a));
-  if (sideA * sideB <= 0 && from >= S(0) && to < S(0)) {
+  if (sideA * sideB <= 0 && from >= S(0) && to <= S(0) && to < from) {
     best = faceHit(a, b, meetingAt(from, to), ta, facing, shape.radius);
   } else if (reach > S(0)) {
     touchCircle(ta, shape.radius, moving, a, b, best);
@@ -93,6 +108,8 @@ void cutByPoly(const PlacedShape<S>& shape, const Vector<S>& a, const Vector<S>&
   for (int i = 0; i < shape.count; ++i) {
     const Plane<S>& edge = shape.planes[i];
     const S from = dot(edge.n, a - edge.v0), to = dot(edge.n, b - edge.v0);
+    // Along the line of the edge it may still come to the edge, from the side.
+    if (from == S(0) && to == S(0)) continue;
     if (from >= S(0)) {
       if (to > S(0) || to == from) return;
       const S at = meetingAt(from, to);
@@ -117,7 +134,7 @@ void touchPoly(const PlacedShape<S>& shape, S moving, const Vector<S>& a, const 
   for (int i = 0; i < shape.count; ++i) {
     const Plane<S>& edge = shape.planes[i];
     const S from = dot(edge.n, a - edge.v0) - reach, to = dot(edge.n, b - edge.v0) - reach;
-    if (from >= S(0) && to < S(0)) {
+    if (from >= S(0) && to <= S(0) && to < from) {
       const SegmentQueryInfo<S> found = faceHit(a, b, meetingAt(from, to), edge.v0, edge.n, shape.radius);
       const Vector<S> along = edge.v0 - previous;
       const bool onEdge = sign(exactDot(along, found.point - previous)) >= 0 &&
@@ -155,6 +172,11 @@ SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a
     case ShapeType::poly:
       touchPoly(shape, radius, a, b, best);
       break;
+  }
+  // What begins in touch hits, and so does what ends in touch, by the same measure.
+  if (!best.hit && contains(inflate(shape.box, radius), b)) {
+    const PointQueryInfo<S> end = pointQuery(shape, b);
+    if (end.distance <= radius) return {true, S(1), end.point, end.gradient};
   }
   return best;
 }

@@ -145,6 +145,90 @@ TYPED_TEST(ShapeQueryTest, AWayThatBeginsInTouchHitsAtOnce) {
                          at(0, 1));
 }
 
+// Both ways, to where a circle of each radius just touches each shape, and in a direction of no axis.
+TYPED_TEST(ShapeQueryTest, AWayThatEndsInTouchHitsAsOneThatBeginsThere) {
+  using S = TypeParam;
+  const auto at = [](int x, int y) { return TestFixture::at(x, y); };
+  struct Case {
+    Shape<S> shape;
+    Vector<S> surface, normal;
+  };
+  std::vector<Case> cases;
+  for (const int rounding : {0, 1, 2}) {
+    const S r(rounding);
+    for (const int side : {-1, 1}) {
+      cases.push_back({TestFixture::box(r), at(10 * side + rounding * side, 2), at(side, 0)});
+      cases.push_back({TestFixture::box(r), at(3, 5 * side + rounding * side), at(0, side)});
+      cases.push_back({TestFixture::line(r), at(3, side * rounding), at(0, side)});
+      cases.push_back({TestFixture::line(r), at(side * (10 + rounding), 0), at(side, 0)});
+      cases.push_back({circleShape<S>(BodyId(), S(3 + rounding)), at(side * (3 + rounding), 0), at(side, 0)});
+      cases.push_back({circleShape<S>(BodyId(), S(3 + rounding)), at(0, side * (3 + rounding)), at(0, side)});
+    }
+  }
+  for (const Case& each : cases) {
+    for (const int moving : {0, 1, 3}) {
+      const Vector<S> touch = each.surface + each.normal * S(moving);
+      for (const int aside : {-7, 0, 3}) {
+        const Vector<S> away = touch + each.normal * S(4) + perp(each.normal) * S(aside);
+        const SegmentQueryInfo<S> ends = TestFixture::shoot(each.shape, away, touch, S(moving));
+        ASSERT_TRUE(ends.hit);
+        EXPECT_LE(abs(ends.alpha - S(1)), S(0x1p-30));
+        EXPECT_LE(length(ends.point - each.surface), S(0x1p-28));
+        // Towards where it comes from; an end of a segment without radius has the normal of a side.
+        EXPECT_GT(dot(ends.normal, away - touch), S(0));
+        EXPECT_TRUE(TestFixture::shoot(each.shape, touch, away, S(moving)).hit);
+        // A unit short of it: no touch.
+        const Vector<S> before = touch + each.normal * S(0x1p-20);
+        EXPECT_FALSE(TestFixture::shoot(each.shape, away, before, S(moving)).hit);
+      }
+    }
+  }
+}
+
+TYPED_TEST(ShapeQueryTest, AWayThatEndsInTouchWithACornerHits) {
+  using S = TypeParam;
+  const auto at = [](int x, int y) { return TestFixture::at(x, y); };
+  for (const int rounding : {0, 2, 5}) {
+    const S moving(5 - rounding);
+    const Shape<S> box = TestFixture::box(S(rounding)), line = TestFixture::line(S(rounding));
+    EXPECT_TRUE(TestFixture::shoot(box, at(30, 19), at(13, 9), moving).hit);
+    EXPECT_TRUE(TestFixture::shoot(box, at(-30, 19), at(-13, 9), moving).hit);
+    EXPECT_TRUE(TestFixture::shoot(line, at(30, 19), at(13, 4), moving).hit);
+    EXPECT_TRUE(TestFixture::shoot(circleShape<S>(BodyId(), S(rounding)), at(30, 19), at(3, 4), moving).hit);
+  }
+}
+
+TYPED_TEST(ShapeQueryTest, AWayThatTouchesInPassingHits) {
+  using S = TypeParam;
+  const auto at = [](int x, int y) { return TestFixture::at(x, y); };
+  // Along the upper face of a box, which begins at x = 10; past its corner; along a segment; by a circle.
+  TestFixture::expectHit(TestFixture::shoot(TestFixture::box(), at(18, 5), at(2, 5)), ratio<S>(1, 2),
+                         at(10, 5), at(1, 0));
+  TestFixture::expectHit(TestFixture::shoot(TestFixture::box(), at(11, 4), at(9, 6)), ratio<S>(1, 2),
+                         at(10, 5), at(1, 0));
+  TestFixture::expectHit(TestFixture::shoot(TestFixture::line(), at(18, 0), at(2, 0)), ratio<S>(1, 2),
+                         at(10, 0), at(1, 0));
+  TestFixture::expectHit(TestFixture::shoot(TestFixture::line(), at(-18, 0), at(18, 0)), ratio<S>(2, 9),
+                         at(-10, 0), at(-1, 0));
+  TestFixture::expectHit(TestFixture::shoot(circleShape<S>(BodyId(), S(3)), at(8, 3), at(-8, 3)),
+                         ratio<S>(1, 2), at(0, 3), at(0, 1));
+  TestFixture::expectHit(TestFixture::shoot(TestFixture::box(), at(18, 7), at(2, 7), S(2)), ratio<S>(1, 2),
+                         at(10, 5), at(0, 1));
+  // A line that only its own end keeps from the shape misses.
+  EXPECT_FALSE(TestFixture::shoot(TestFixture::box(), at(18, 5), at(11, 5)).hit);
+  EXPECT_FALSE(TestFixture::shoot(TestFixture::line(), at(18, 0), at(11, 0)).hit);
+  EXPECT_FALSE(TestFixture::shoot(TestFixture::line(), at(11, 0), at(18, 0)).hit);
+}
+
+TYPED_TEST(ShapeQueryTest, ACastFromTheCentreHitsAtOnceWithADocumentedNormal) {
+  using S = TypeParam;
+  const auto at = [](int x, int y) { return TestFixture::at(x, y); };
+  TestFixture::expectHit(TestFixture::shoot(circleShape<S>(BodyId(), S(3)), at(0, 0), at(9, 0)), S(0),
+                         at(0, 3), at(0, 1));
+  const Shape<S> square = boxShape<S>(BodyId(), S(4), S(4));
+  TestFixture::expectHit(TestFixture::shoot(square, at(0, 0), at(-9, 0)), S(0), at(0, -2), at(0, -1));
+}
+
 TYPED_TEST(ShapeQueryTest, AWayWithoutLengthIsAPoint) {
   using S = TypeParam;
   const auto at = [](int x, int y) { return TestFixture::at(x, y); };
