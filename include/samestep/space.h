@@ -398,6 +398,9 @@ class Space {
   /// @throws SpaceLocked, ForeignWorld, MissingCallback
   void adopt(const WorldState<S>& state);
   void adopt(WorldState<S>&& state);
+  /// How often another world was brought in, by restore, adopt or loadSnapshot. Wiring: a recorder goes by
+  /// it.
+  std::uint64_t worldsBroughtIn() const;
   /// Forgets everything that can be computed again. Changes no result.
   /// @throws SpaceLocked
   void dropCache();

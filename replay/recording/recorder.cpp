@@ -3,6 +3,7 @@
 
 #include <samestep/version.h>
 
+#include <memory>
 #include <variant>
 
 #include "base/require_ieee.h"
@@ -68,8 +69,11 @@ struct Recorder<S>::Impl {
         sink(sinkIn),
         data(dataIn),
         wiring(wiringIn),
-        stamp(space.stamp()) {
+        startStamp(space.stamp()),
+        stamp(space.stamp()),
+        broughtIn(space.worldsBroughtIn()) {
     XXH3_64bits_reset(&checksum);
+    setRewindTicks(kDefaultRewindTicks);
   }
 
   void begin() {
@@ -82,14 +86,61 @@ struct Recorder<S>::Impl {
     encodeWorld(space.state(), piece);
     lastHash = space.hash();
     write.put(lastHash);
+    addMark();
+    piece.reserve(piece.size() + 2 * kPieceBytes);
+    flushWhenFull();
   }
-  void flush() {
-    XXH3_64bits_update(&checksum, piece.data(), piece.size());
-    sink(piece, data);
-    piece.clear();
+
+  /// The end of a step in the recording; the one with tick 0 is that of the first world.
+  struct Mark {
+    std::uint64_t end = 0;  ///< Bytes of the recording up to here.
+    std::uint64_t hash = 0;
+  };
+  Mark& markOf(std::uint64_t tick) { return marks[static_cast<std::size_t>(tick % marks.size())]; }
+  void addMark() {
+    markOf(ticks) = {given + piece.size(), lastHash};
+    if (ticks - oldest >= marks.size()) oldest = ticks - marks.size() + 1;
   }
+  void setRewindTicks(std::uint32_t most) {
+    std::vector<Mark> kept(std::size_t{most} + 1);
+    const std::uint64_t first = ticks - oldest > most ? ticks - most : oldest;
+    for (std::uint64_t tick = first; tick <= ticks && !marks.empty(); ++tick) {
+      kept[static_cast<std::size_t>(tick % kept.size())] = markOf(tick);
+    }
+    marks = std::move(kept);
+    oldest = first;
+  }
+
+  void give(std::size_t bytes) {
+    XXH3_64bits_update(&checksum, piece.data(), bytes);
+    sink({piece.data(), bytes}, data);
+    piece.erase(piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(bytes));
+    given += bytes;
+  }
+  /// Gives away what can no longer be taken back.
   void flushWhenFull() {
-    if (piece.size() >= kPieceBytes) flush();
+    const std::uint64_t settled = markOf(oldest).end;
+    if (settled >= given + kPieceBytes) give(static_cast<std::size_t>(settled - given));
+  }
+  void cutAfter(std::uint64_t tick) {
+    ticks = tick;
+    piece.resize(static_cast<std::size_t>(markOf(tick).end - given));
+    lastHash = markOf(tick).hash;
+    stamp = startStamp + tick;
+  }
+  /// Goes back to the step that the Space was restored to, if it was.
+  /// @param made  steps made since
+  void followRestore(std::uint64_t made) {
+    if (space.worldsBroughtIn() == broughtIn) return;
+    const std::uint64_t to = space.stamp() - made;
+    const bool known = to >= startStamp + oldest && to <= stamp;
+    require<Fault::ForeignWorld>(known,
+                                 "The world was restored to a step that the recorder cannot go back to.");
+    const std::uint64_t tick = to - startStamp;
+    require<Fault::ForeignWorld>(made > 0 || markOf(tick).hash == space.hash(),
+                                 "The world was restored to one that is not the recording's after a step.");
+    cutAfter(tick);
+    broughtIn = space.worldsBroughtIn();
   }
   void check() const {
     require<Fault::ForeignWorld>(!checking || space.hash() == lastHash,
@@ -101,6 +152,7 @@ struct Recorder<S>::Impl {
     lastHash = space.hash();
     write.put(RecordingItem::step);
     write.put(lastHash);
+    addMark();
     flushWhenFull();
     return lastHash;
   }
@@ -110,12 +162,17 @@ struct Recorder<S>::Impl {
   ByteSink sink;
   void* data;
   Wiring<S> wiring;
+  std::uint64_t startStamp;
   std::uint64_t stamp;
+  std::uint64_t broughtIn;  ///< Of the worlds that the Space was given, how many are known here.
   std::uint64_t ticks = 0;
+  std::uint64_t oldest = 0;  ///< The first tick that can be gone back to.
+  std::uint64_t given = 0;   ///< Bytes that the sink has.
   std::uint64_t lastHash = 0;
   bool checking = false;
   bool finished = false;
-  std::vector<std::uint8_t> piece;
+  std::vector<std::uint8_t> piece;  ///< Bytes that the sink does not have yet.
+  std::vector<Mark> marks;          ///< A ring of the ticks that can be gone back to.
   BytesSink pieceSink{piece};
   CanonicalWriter<BytesSink> write{pieceSink};
   XXH3_state_t checksum;
@@ -130,8 +187,9 @@ Recorder<S>::Recorder(Space<S>& space, S timeStep, ByteSink sink, void* data, co
   require<Fault::SpaceLocked>(!space.isLocked());
   require<Fault::ValueOutOfRange>(timeStep > S(0) && timeStep <= kMaxTimeStep<S>);
   if (const char* flaw = flawOf(space.state())) fail<Fault::ForeignWorld>(flaw);
-  impl_ = new Impl(space, timeStep, sink, data, wiring);
-  impl_->begin();
+  auto impl = std::make_unique<Impl>(space, timeStep, sink, data, wiring);
+  impl->begin();
+  impl_ = impl.release();
 }
 
 template <Scalar S>
@@ -142,18 +200,19 @@ Recorder<S>::~Recorder() {
 template <Scalar S>
 BodyId Recorder<S>::apply(const Command<S>& command) {
   requireRecordable(command);
+  impl_->followRestore(0);
   impl_->check();
   const BodyId id = samestep::apply(impl_->space, command, impl_->wiring);
   if (impl_->checking) impl_->lastHash = impl_->space.hash();
   impl_->write.put(RecordingItem::command);
   impl_->write.put(kindOf(command));
   std::visit(CommandWriter<S>{impl_->write, impl_->pieceSink}, command);
-  impl_->flushWhenFull();
   return id;
 }
 
 template <Scalar S>
 std::uint64_t Recorder<S>::step() {
+  impl_->followRestore(0);
   impl_->check();
   impl_->space.step(impl_->timeStep);
   return impl_->recordStep();
@@ -161,11 +220,18 @@ std::uint64_t Recorder<S>::step() {
 
 template <Scalar S>
 std::uint64_t Recorder<S>::stepped() {
+  impl_->followRestore(1);
   require<Fault::ForeignWorld>(impl_->space.stamp() == impl_->stamp + 1,
                                "stepped() is called once after each step.");
   require<Fault::ForeignWorld>(impl_->space.currentTimeStep() == impl_->timeStep,
                                "The step was not as long as those of the recording.");
   return impl_->recordStep();
+}
+
+template <Scalar S>
+void Recorder<S>::setRewindTicks(std::uint32_t ticks) {
+  require<Fault::ValueOutOfRange>(ticks <= kMostRewindTicks, "At most 2^15 steps can be taken back.");
+  impl_->setRewindTicks(ticks);
 }
 
 template <Scalar S>
@@ -177,10 +243,12 @@ void Recorder<S>::setChecking(bool checking) {
 template <Scalar S>
 void Recorder<S>::finish() {
   if (impl_->finished) return;
+  impl_->followRestore(0);
   impl_->finished = true;
+  impl_->cutAfter(impl_->ticks);
   impl_->write.put(RecordingItem::end);
   impl_->write.put(impl_->ticks);
-  impl_->flush();
+  impl_->give(impl_->piece.size());
   impl_->write.put(static_cast<std::uint64_t>(XXH3_64bits_digest(&impl_->checksum)));
   impl_->sink(impl_->piece, impl_->data);
 }

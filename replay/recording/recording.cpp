@@ -73,8 +73,10 @@ class CommandReader {
   Command<S> spawn() {
     Command<S> command(std::in_place_type<Spawn<S>>);
     auto& made = std::get<Spawn<S>>(command);
-    read_.get(made.id);
     std::uint64_t at = bytes_.offset();
+    read_.get(made.id);
+    if (!made.id.valid() && made.id != BodyId{}) failFormat(at, "an id without an index has a generation");
+    at = bytes_.offset();
     read_.get(made.body);
     made.body.derive();
     if (!made.body.wellFormed()) failFormat(at, "a body is malformed");
@@ -85,7 +87,7 @@ class CommandReader {
       at = bytes_.offset();
       Shape<S>& shape = made.shapes.emplace_back();
       read_.get(shape);
-      if (shape.body().valid()) failFormat(at, "a new shape has a body");
+      if (shape.body() != BodyId{}) failFormat(at, "a new shape has a body");
       if (!shape.wellFormed()) failFormat(at, "a shape is malformed");
       if (made.id.valid()) {
         ShapeId id;
@@ -134,9 +136,14 @@ RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const W
   const std::uint64_t first = after.offset();
 
   offset_ = first;
+  std::uint64_t afterStep = first;
   for (RecordingItem item = next(); item != RecordingItem::end; item = next()) {
-    if (item == RecordingItem::step) ++ticks_;
+    if (item != RecordingItem::step) continue;
+    ++ticks_;
+    afterStep = offset_;
   }
+  if (ticks_ == 0) failFormat(first, "a recording without a step");
+  if (itemOffset_ != afterStep) failFormat(afterStep, "a command after the last step");
   offset_ = first;
 }
 
@@ -162,6 +169,17 @@ RecordingItem RecordingReader<S>::next() {
   }
   offset_ = reader.offset();
   return item;
+}
+
+template <Scalar S>
+Command<S> RecordingReader<S>::commandAt(std::span<const std::uint8_t> bytes, std::uint64_t& offset) {
+  ByteReader reader(bytes, offset);
+  if (CanonicalReader(reader).next<RecordingItem>() != RecordingItem::command) {
+    failFormat(offset, "not a command");
+  }
+  Command<S> command = CommandReader<S>(reader).command();
+  offset = reader.offset();
+  return command;
 }
 
 template <Scalar S>

@@ -22,7 +22,11 @@ bool asksForMore(const Command<S>& command, const WorldLimits& limits) {
 
 template <Scalar S>
 Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const WorldLimits& limits)
-    : reader_(bytes, limits), wiring_(wiring), limits_(limits), recordedHash_(reader_.initialHash()) {
+    : bytes_(bytes),
+      reader_(bytes, limits),
+      wiring_(wiring),
+      limits_(limits),
+      recordedHash_(reader_.initialHash()) {
   if (wiring_.connect != nullptr) wiring_.connect(space_, wiring_.data);
   space_.setMaxPairs(limits.pairs);
   space_.adopt(reader_.initialWorld());
@@ -31,19 +35,23 @@ Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, 
 template <Scalar S>
 bool Replay<S>::applyCommands() {
   if (applied_ || ended_) return !ended_;
-  commands_.clear();
+  commandsBegin_ = reader_.nextOffset();
   RecordingItem item = reader_.next();
   for (; item == RecordingItem::command; item = reader_.next()) {
     if (asksForMore(reader_.command(), limits_)) {
       failFormat(reader_.offset(), "more bodies or shapes than allowed");
     }
+    if (filter_ != nullptr && !filter_(reader_.command(), reader_.offset(), filterData_)) {
+      ended_ = true;
+      return false;
+    }
     // Recorded commands were accepted once.
     orFailFormat(reader_.offset(), [&] { apply(space_, reader_.command(), wiring_); });
-    commands_.push_back(reader_.command());
     if (space_.state().bodies.slots() > limits_.bodies || space_.state().shapes.slots() > limits_.shapes) {
       failFormat(reader_.offset(), "more bodies or shapes than allowed");
     }
   }
+  commandsEnd_ = reader_.offset();
   applied_ = true;
   ended_ = item == RecordingItem::end;
   return !ended_;

@@ -2,37 +2,57 @@
 #include <samestep/replay_diff.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "base/require_ieee.h"
 
 namespace samestep {
 namespace {
 
-/// The commands of one list that the other lacks, in words.
+/// So many commands of a tick are told; of a recording made to harm there are millions.
+constexpr std::size_t kMostCommandsTold = 1000;
+
+using CommandBytes = std::span<const std::uint8_t>;
+
+bool bytesLess(CommandBytes a, CommandBytes b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+bool sameBytes(CommandBytes a, CommandBytes b) { return std::equal(a.begin(), a.end(), b.begin(), b.end()); }
+
+/// The bytes of each command, sorted.
 template <Scalar S>
-std::vector<std::string> wordsOf(const std::vector<Command<S>>& commands) {
-  std::vector<std::string> words;
-  for (const Command<S>& command : commands) words.push_back(describe(command));
-  return words;
+std::vector<CommandBytes> sortedCommands(const Replay<S>& replay) {
+  std::vector<CommandBytes> all;
+  replay.eachCommand([&](const Command<S>&, CommandBytes bytes) { all.push_back(bytes); });
+  std::sort(all.begin(), all.end(), bytesLess);  // total order: equal commands are alike
+  return all;
 }
 
-std::vector<std::string> without(std::vector<std::string> words, const std::vector<std::string>& others) {
-  for (const std::string& other : others) {
-    const auto found = std::find(words.begin(), words.end(), other);
-    if (found != words.end()) words.erase(found);
-  }
+/// In words, those of one side that the other lacks, in their order.
+template <Scalar S>
+std::vector<std::string> onlyIn(const Replay<S>& replay, const std::vector<CommandBytes>& own,
+                                const std::vector<CommandBytes>& others) {
+  std::vector<CommandBytes> missing;
+  std::set_difference(own.begin(), own.end(), others.begin(), others.end(), std::back_inserter(missing),
+                      bytesLess);
+  std::vector<std::string> words;
+  replay.eachCommand([&](const Command<S>& command, CommandBytes bytes) {
+    const auto found = std::lower_bound(missing.begin(), missing.end(), bytes, bytesLess);
+    if (found == missing.end() || !sameBytes(*found, bytes)) return;
+    missing.erase(found);
+    if (words.size() < kMostCommandsTold) words.push_back(describe(command));
+  });
   return words;
 }
 
 template <Scalar S>
 void noteCommands(const Replay<S>& a, const Replay<S>& b, ReplayDifference& difference) {
-  if (difference.commandTick != 0 || (a.commands().empty() && b.commands().empty())) return;
-  const std::vector<std::string> wordsA = wordsOf(a.commands());
-  const std::vector<std::string> wordsB = wordsOf(b.commands());
-  if (wordsA == wordsB) return;
+  if (difference.commandTick != 0 || sameBytes(a.commandBytes(), b.commandBytes())) return;
   difference.commandTick = a.tick() + 1;
-  difference.onlyA = without(wordsA, wordsB);
-  difference.onlyB = without(wordsB, wordsA);
+  const std::vector<CommandBytes> ofA = sortedCommands(a);
+  const std::vector<CommandBytes> ofB = sortedCommands(b);
+  difference.onlyA = onlyIn(a, ofA, ofB);
+  difference.onlyB = onlyIn(b, ofB, ofA);
 }
 
 /// The worlds at the end of each stage of one step.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/require_ieee.h"
+#include "state/state_hash.h"
 
 namespace samestep {
 namespace {
@@ -230,10 +231,19 @@ struct Describer {
     return text;
   }
   std::string operator()(const Spawn<S>& spawn) const {
-    return (*this)(spawn.body) + ", " + std::to_string(spawn.shapes.size()) + " shapes";
+    std::string text = (*this)(spawn.body) + ", " + std::to_string(spawn.shapes.size()) + " shapes";
+    for (const Shape<S>& shape : spawn.shapes) text += "; " + (*this)(shape);
+    return text;
   }
   std::string operator()(const UserInput& input) const {
-    return std::to_string(input.bytes.size()) + " bytes";
+    constexpr std::size_t kMostShown = 64;
+    std::string text = std::to_string(input.bytes.size()) + " bytes";
+    for (std::size_t i = 0; i < std::min(input.bytes.size(), kMostShown); ++i) {
+      text += (i == 0 ? ": " : " ") + hexBits(input.bytes[i]).substr(16);
+    }
+    if (input.bytes.size() <= kMostShown) return text;
+    // What follows may be all that differs.
+    return text + " ..., all of them XXH3 " + hexBits(XXH3_64bits(input.bytes.data(), input.bytes.size()));
   }
 };
 

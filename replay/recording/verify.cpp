@@ -7,6 +7,48 @@
 
 namespace samestep {
 
+namespace {
+
+/// What the first bytes and the first world have that was not expected; null for nothing.
+template <Scalar S>
+const char* unexpectedIn(const Replay<S>& replay, const Expectations& expected) {
+  if (expected.scalar && *expected.scalar != ScalarTraits<S>::kKind) return "the scalar";
+  if (expected.stepsPerSecond) {
+    const std::uint32_t rate = *expected.stepsPerSecond;
+    require<Fault::ValueOutOfRange>(rate > 0 && rate <= 1000000, "Steps per second are 1 to 1000000.");
+    if (replay.timeStep() != ratio<S>(1, static_cast<int>(rate))) return "the time step";
+  }
+  if (expected.ticks && *expected.ticks != replay.ticks()) return "the number of steps";
+  if (expected.firstTick && *expected.firstTick != replay.space().stamp()) return "the step it begins after";
+  if (expected.firstHash && *expected.firstHash != replay.space().hash()) return "the first world";
+  return nullptr;
+}
+
+/// Looks out for commands that are not allowed.
+template <Scalar S>
+struct CommandWatch {
+  std::uint32_t allowed;
+  VerifyResult& result;
+
+  static const char* sentence(CommandKind kind) {
+    constexpr const char* kSentences[kCommandKinds] = {
+        "a command: impulse",         "a command: force",    "a command: velocity",
+        "a command: angularVelocity", "a command: position", "a command: angle",
+        "a command: spawn",           "a command: remove",   "a command: input"};
+    return kSentences[static_cast<std::size_t>(kind)];
+  }
+  static bool filter(const Command<S>& command, std::uint64_t offset, void* data) {
+    auto& self = *static_cast<CommandWatch*>(data);
+    const CommandKind kind = kindOf(command);
+    if ((self.allowed >> static_cast<unsigned>(kind) & 1u) != 0) return true;
+    self.result.unexpected = sentence(kind);
+    self.result.unexpectedOffset = offset;
+    return false;
+  }
+};
+
+}  // namespace
+
 template <Scalar S>
 VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
                     const VerifyOptions& options) {
@@ -15,6 +57,11 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring
   replay.space().setWorkers(options.workers, Sharing::always);
   VerifyResult result;
   result.ticks = replay.ticks();
+  if (replay.space().stamp() > options.mostFirstTick) failFormat(28, "begins after more steps than allowed");
+  result.unexpected = unexpectedIn(replay, options.expected);
+  if (result.unexpected != nullptr) return result;
+  CommandWatch<S> watch{options.expected.commands, result};
+  replay.setCommandFilter(CommandWatch<S>::filter, &watch);
   do {
     result.recordedHash = replay.recordedHash();
     result.computedHash = replay.space().hash();
@@ -27,7 +74,7 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring
       return result;
     }
   } while (replay.step());
-  result.matches = true;
+  result.matches = result.unexpected == nullptr;
   return result;
 }
 

@@ -39,6 +39,8 @@ struct Wiring {
   KernelTarget kernel = nextBestKernel(KernelTarget::best);
   std::uint32_t maxPairs = kDefaultMaxPairs;
   Remarks remarks;
+  /// Counts the worlds that came from elsewhere, for who must notice one.
+  std::uint64_t worldsBroughtIn = 0;
 
   /// What is registered under a number, or nullptr.
   template <class Entry>

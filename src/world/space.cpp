@@ -511,6 +511,7 @@ void checkAdoptable(const Wiring<S>& wiring, const WorldState<S>& state) {
 /// Makes a state that came from elsewhere the Space's own.
 template <Scalar S>
 void takeOver(StepContext<S> world) {
+  ++world.wiring.worldsBroughtIn;
   const std::uint32_t serial = world.wiring.serial;
   world.state.bodies.each([&](BodyId id, Body<S>& body) { BodyAccess<S>::attach(body, id, serial); });
   world.state.shapes.each([&](ShapeId id, Shape<S>& shape) { shape.attach(id, serial); });
@@ -520,6 +521,11 @@ void takeOver(StepContext<S> world) {
 }
 
 }  // namespace
+
+template <Scalar S>
+std::uint64_t Space<S>::worldsBroughtIn() const {
+  return parts_->wiring.worldsBroughtIn;
+}
 
 template <Scalar S>
 void Space<S>::adopt(const WorldState<S>& state) {

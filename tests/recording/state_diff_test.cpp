@@ -123,6 +123,44 @@ TYPED_TEST(StateDiffTest, FindsTheCommandThatMadeTwoMatchesPart) {
   EXPECT_EQ(found.onlyB[0].substr(0, 8), "impulse:");
 }
 
+/// A match with a game's own input, which changes nothing in the world but its user data.
+template <Scalar S>
+Bytes matchWithInput(const std::vector<std::uint8_t>& input) {
+  Space<S> space;
+  fillSmall(space);
+  Bytes bytes;
+  Recorder<S> recorder(space, kTick<S>, bytes, testWiring<S>());
+  for (int tick = 1; tick <= 10; ++tick) {
+    if (tick == 4) recorder.apply(UserInput{input});
+    recorder.step();
+  }
+  recorder.finish();
+  return bytes;
+}
+
+TYPED_TEST(StateDiffTest, InputsThatDifferInTheirBytesAreTold) {
+  using S = TypeParam;
+  std::vector<std::uint8_t> longer(300, 1);
+  std::vector<std::uint8_t> other = longer;
+  other[299] = 2;
+  for (const auto& [inputA, inputB] :
+       {std::pair(std::vector<std::uint8_t>{1, 2}, std::vector<std::uint8_t>{1, 10}),
+        std::pair(longer, other)}) {
+    const ReplayDifference found =
+        findDifference<S>(matchWithInput<S>(inputA), matchWithInput<S>(inputB), testWiring<S>(), 1);
+
+    EXPECT_FALSE(found.worldsDiffer);
+    EXPECT_EQ(found.commandTick, 4u);
+    ASSERT_EQ(found.onlyA.size(), 1u);
+    ASSERT_EQ(found.onlyB.size(), 1u);
+    EXPECT_NE(found.onlyA[0], found.onlyB[0]);
+  }
+}
+
+TYPED_TEST(StateDiffTest, AnInputIsShownByItsBytes) {
+  EXPECT_EQ(describe<TypeParam>(UserInput{{1, 10, 255}}), "input: 3 bytes: 01 0a ff");
+}
+
 TYPED_TEST(StateDiffTest, TheSameMatchTwiceHasNoDifference) {
   const Bytes bytes = matchWith<TypeParam>(true, true);
 

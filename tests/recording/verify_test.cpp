@@ -2,6 +2,7 @@
 #include <samestep/verify.h>
 
 #include <algorithm>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -271,6 +272,81 @@ TYPED_TEST(VerifyTest, AlteredWorldsThatAreAcceptedCanBeStepped) {
     }
   }
   EXPECT_GT(stepped, 1000u);
+}
+
+/// What a server knows of recordSmallMatch(20).
+template <Scalar S>
+Expectations expectationsOfSmallMatch() {
+  Space<S> space;
+  fillSmall(space);
+  Expectations expected;
+  expected.firstHash = space.hash();
+  expected.stepsPerSecond = 64;
+  expected.scalar = ScalarTraits<S>::kKind;
+  expected.ticks = 20;
+  expected.firstTick = 0;
+  return expected;
+}
+
+TYPED_TEST(VerifyTest, AMatchAsExpectedMatches) {
+  VerifyOptions options;
+  options.expected = expectationsOfSmallMatch<TypeParam>();
+
+  const VerifyResult result =
+      verify<TypeParam>(recordSmallMatch<TypeParam>(20), testWiring<TypeParam>(), options);
+
+  EXPECT_TRUE(result.matches);
+  EXPECT_EQ(result.unexpected, nullptr);
+}
+
+TYPED_TEST(VerifyTest, EachExpectationThatIsNotMetIsNamed) {
+  const Bytes bytes = recordSmallMatch<TypeParam>(20);
+  const auto unexpected = [&](auto&& change) {
+    VerifyOptions options;
+    options.expected = expectationsOfSmallMatch<TypeParam>();
+    change(options.expected);
+    const VerifyResult result = verify<TypeParam>(bytes, testWiring<TypeParam>(), options);
+    EXPECT_FALSE(result.matches);
+    return std::string(result.unexpected != nullptr ? result.unexpected : "nothing");
+  };
+
+  EXPECT_EQ(unexpected([](Expectations& e) { *e.firstHash ^= 1; }), "the first world");
+  EXPECT_EQ(unexpected([](Expectations& e) { e.stepsPerSecond = 30; }), "the time step");
+  EXPECT_EQ(unexpected([](Expectations& e) { e.ticks = 21; }), "the number of steps");
+  EXPECT_EQ(unexpected([](Expectations& e) { e.firstTick = 1; }), "the step it begins after");
+  EXPECT_EQ(unexpected([](Expectations& e) {
+              e.scalar = *e.scalar == ScalarKind::fixed ? ScalarKind::float64 : ScalarKind::fixed;
+            }),
+            "the scalar");
+}
+
+TYPED_TEST(VerifyTest, ACommandThatNoPlayerMayGiveIsNamedWithItsOffset) {
+  const Bytes bytes = recordSmallMatch<TypeParam>(20);
+  for (std::uint32_t kind = 0; kind < kCommandKinds; ++kind) {
+    VerifyOptions options;
+    options.expected.commands &= ~(1u << kind);
+    const VerifyResult result = verify<TypeParam>(bytes, testWiring<TypeParam>(), options);
+    ASSERT_NE(result.unexpected, nullptr) << kind;
+    EXPECT_FALSE(result.matches);
+    EXPECT_EQ(result.unexpected, std::string("a command: ") + commandName(static_cast<CommandKind>(kind)));
+    std::uint64_t offset = result.unexpectedOffset;
+    EXPECT_EQ(kindOf(RecordingReader<TypeParam>::commandAt(bytes, offset)), static_cast<CommandKind>(kind));
+  }
+}
+
+TYPED_TEST(VerifyTest, AMatchThatBeginsAfterMoreStepsThanAllowedIsRefused) {
+  Space<TypeParam> space;
+  fillSmall(space);
+  for (int i = 0; i < 5; ++i) space.step(kTick<TypeParam>);
+  Bytes bytes;
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, bytes);
+  recorder.step();
+  recorder.finish();
+  VerifyOptions options;
+  options.mostFirstTick = 5;
+  EXPECT_TRUE(verify<TypeParam>(bytes, testWiring<TypeParam>(), options).matches);
+  options.mostFirstTick = 4;
+  EXPECT_THROW(verify<TypeParam>(bytes, testWiring<TypeParam>(), options), FormatError);
 }
 
 TEST(VerifyAnyTest, TheScalarIsReadFromTheRecording) {

@@ -9,6 +9,10 @@
 
 namespace samestep {
 
+/// Four seconds and nine minutes at 60 Hz.
+inline constexpr std::uint32_t kDefaultRewindTicks = 240;
+inline constexpr std::uint32_t kMostRewindTicks = 1u << 15;
+
 /// Takes the bytes of a recording, piece by piece, in order.
 using ByteSink = void (*)(std::span<const std::uint8_t> bytes, void* data);
 
@@ -17,6 +21,11 @@ using ByteSink = void (*)(std::span<const std::uint8_t> bytes, void* data);
 /// All that changes the world between steps must go through apply(), so that it is recorded; functions
 /// registered with the Space, and what they do during a step, are not recorded but must be registered again
 /// for the replay. A recording that was not finished is refused as cut short.
+///
+/// Rollback: where the Space has been restored to the world after a recorded step, or to the one the
+/// recording began with, the recording goes back there by itself and goes on from there, so what it tells is
+/// the match as it was played in the end. Such a world is saved between a step and the next command. Nothing
+/// is allocated once a match has had its busiest stretch.
 ///
 ///     std::vector<std::uint8_t> bytes;
 ///     Recorder<Fixed> recorder(space, ratio<Fixed>(1, 60), bytes);
@@ -39,8 +48,11 @@ class Recorder {
 
   /// Applies a command and records it; one that the Space refuses is not recorded.
   /// @return as samestep::apply
-  /// @throws as samestep::apply; ValueOutOfRange for a spawn with more than 256 shapes and an input of more
-  ///         than 2^16 bytes; ForeignWorld where checking finds an unrecorded change
+  /// @throws as samestep::apply; ForeignWorld where the Space was given a world that is none of the
+  /// recording's,
+  ///         or one from before the steps that can be taken back; ValueOutOfRange for a spawn with more than
+  ///         256 shapes and an input of more than 2^16 bytes; ForeignWorld where checking finds an unrecorded
+  ///         change
   BodyId apply(const Command<S>& command);
   /// Makes a step and records it.
   /// @return the hash of the world
@@ -49,10 +61,16 @@ class Recorder {
   /// For a game that calls Space::step by itself: records the step it has just made.
   /// @throws ForeignWorld unless exactly one step of the recording's length has been made since the last call
   std::uint64_t stepped();
+  /// How many of the last steps can be taken back; at first kDefaultRewindTicks. Bytes of older ones are
+  /// given to the sink. Fewer than before forgets; more holds from now on.
+  /// @throws ValueOutOfRange for more than kMostRewindTicks
+  void setRewindTicks(std::uint32_t ticks);
   /// Whether apply() and step() look, for the price of one more hash each, if anything changed the world that
   /// was not recorded. Off at first.
   void setChecking(bool checking);
-  /// Ends the recording. Nothing more can be recorded.
+  /// Ends the recording after its last step: what was done since is left out. Nothing more can be recorded.
+  /// A recording without a step is refused by readers.
+  /// @throws ForeignWorld where a world was brought in that is none of the recording's
   void finish();
 
   /// Steps recorded.

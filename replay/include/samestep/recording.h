@@ -35,9 +35,13 @@ enum class RecordingItem : std::uint8_t {
 template <Scalar S>
 class RecordingReader {
  public:
-  /// Checks all of it first: structure, numbers, checksum, and that nothing follows.
+  /// Checks all of it first: structure, numbers, checksum, that it has a step, that no command comes after
+  /// the last one, whose hash would cover it, and that nothing follows.
   /// @throws FormatError
   explicit RecordingReader(std::span<const std::uint8_t> bytes, const WorldLimits& limits = {});
+  /// The command at `offset`, as offset() gave it for these bytes, which moves to the next item.
+  /// @throws FormatError
+  static Command<S> commandAt(std::span<const std::uint8_t> bytes, std::uint64_t& offset);
 
   /// Seconds.
   S timeStep() const { return timeStep_; }
@@ -49,6 +53,8 @@ class RecordingReader {
 
   /// Reads the next item; once at the end, stays there.
   RecordingItem next();
+  /// Where the next item stands.
+  std::uint64_t nextOffset() const { return offset_; }
   /// Of the item read last.
   std::uint64_t offset() const { return itemOffset_; }
   const Command<S>& command() const { return command_; }

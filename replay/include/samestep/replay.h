@@ -26,22 +26,46 @@ class Replay {
   /// The hash that was recorded for the world as it should be now.
   std::uint64_t recordedHash() const { return recordedHash_; }
 
-  /// Applies what was done before the next step, once; commands() then has it. False at the end.
+  /// Applies what was done before the next step, once; eachCommand() then tells it. False at the end.
   /// @throws FormatError for what the world refuses, and where it outgrows the limits
   bool applyCommands();
   /// applyCommands, unless that has been done, and the step. False at the end.
   /// @throws as applyCommands
   bool step();
 
-  /// What was done last before a step.
-  const std::vector<Command<S>>& commands() const { return commands_; }
+  /// Asked about each command before it is applied; false ends the replay there. Null for none.
+  void setCommandFilter(bool (*filter)(const Command<S>& command, std::uint64_t offset, void* data),
+                        void* data) {
+    filter_ = filter;
+    filterData_ = data;
+  }
+
+  /// What was done last before a step, as it stands in the recording. Commands are not kept: a few bytes each
+  /// may tell of any number.
+  std::span<const std::uint8_t> commandBytes() const {
+    return bytes_.subspan(static_cast<std::size_t>(commandsBegin_),
+                          static_cast<std::size_t>(commandsEnd_ - commandsBegin_));
+  }
+  /// Calls visit(command, its bytes) for each of them.
+  template <class Visit>
+  void eachCommand(Visit&& visit) const {
+    for (std::uint64_t offset = commandsBegin_; offset < commandsEnd_;) {
+      const std::uint64_t from = offset;
+      const Command<S> command = RecordingReader<S>::commandAt(bytes_, offset);
+      visit(command, bytes_.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(offset - from)));
+    }
+  }
 
  private:
+  std::span<const std::uint8_t> bytes_;
   RecordingReader<S> reader_;
   Wiring<S> wiring_;
   WorldLimits limits_;
   Space<S> space_;
-  std::vector<Command<S>> commands_;
+  bool (*filter_)(const Command<S>&, std::uint64_t, void*) = nullptr;
+  void* filterData_ = nullptr;
+  std::uint64_t commandsBegin_ = 0;
+  std::uint64_t commandsEnd_ = 0;
   std::uint64_t tick_ = 0;
   std::uint64_t recordedHash_ = 0;
   bool applied_ = false;

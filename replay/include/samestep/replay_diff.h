@@ -22,7 +22,8 @@ struct ReplayDifference {
   std::vector<FieldDifference> fields;
   /// The first step before which different things were done, 0 if there is none up to `tick`.
   std::uint64_t commandTick = 0;
-  /// What was done in one only then, in words.
+  /// What was done in one only then, in words, at most a thousand; both empty where only the order differs.
+  /// Commands are compared by all their bytes, the game's own input too.
   std::vector<std::string> onlyA;
   std::vector<std::string> onlyB;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <samestep/replay.h>
@@ -19,13 +20,39 @@ struct VerifyResult {
   std::uint64_t firstWrongTick = 0;
   std::uint64_t recordedHash = 0;  ///< For that step, or the last one.
   std::uint64_t computedHash = 0;
+  /// What of the expectations is not met, where matches is false for that: "the time step", "the scalar",
+  /// "the number of steps", "the step it begins after", "the first world", "a command: position"; else null.
+  const char* unexpected = nullptr;
+  /// Of the command that is not allowed.
+  std::uint64_t unexpectedOffset = 0;
 };
+
+/// What the match was to be, told by whoever gave it out, not by the recording: by itself a recording shows
+/// only that its own hashes follow from its own world and commands. See docs/replays.md.
+struct Expectations {
+  /// Of the world before the first step: its bodies, settings, handlers, all of it.
+  std::optional<std::uint64_t> firstHash;
+  /// The time step is 1 s over it, rounded once.
+  std::optional<std::uint32_t> stepsPerSecond;
+  std::optional<ScalarKind> scalar;
+  std::optional<std::uint64_t> ticks;
+  /// Steps that the first world had made; in a match recorded from its start, 0.
+  std::optional<std::uint64_t> firstTick;
+  /// A bit (1 << kind) for each CommandKind that a player may give.
+  std::uint32_t commands = (1u << kCommandKinds) - 1;
+};
+
+/// A day at 60 Hz.
+inline constexpr std::uint64_t kMostFirstTick = 24 * 60 * 60 * 60;
 
 /// How verify goes about it.
 struct VerifyOptions {
   /// For recordings from strangers, what the game's own matches need: the pairs bound the memory and the time
   /// of a step.
   WorldLimits limits{};
+  Expectations expected{};
+  /// A recording whose world had made more steps before is refused.
+  std::uint64_t mostFirstTick = kMostFirstTick;
   /// Called after every step; false stops, as for a recording that takes too long. Null for none.
   bool (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
   void* data = nullptr;

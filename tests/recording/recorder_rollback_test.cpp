@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/recorder.h>
+#include <samestep/verify.h>
+
+#include <gtest/gtest.h>
+
+#include "support/recordings.h"
+#include "support/scalars.h"
+
+namespace samestep {
+namespace {
+
+template <class S>
+class RecorderRollbackTest : public ::testing::Test {};
+TYPED_TEST_SUITE(RecorderRollbackTest, AllScalars);
+
+template <Scalar S>
+ApplyImpulse<S> push(BodyId player, int strength) {
+  return {player, {S(strength), S(0)}, {}};
+}
+
+/// A match in which each guess of a player's input is taken back after `depth` steps, or one without guesses.
+template <Scalar S>
+Bytes match(int depth, std::uint64_t& lastHash) {
+  Space<S> space;
+  const BodyId player = fillSmall(space);
+  Bytes bytes;
+  Recorder<S> recorder(space, kTick<S>, bytes);
+  SavedSpace<S> saved;
+  for (int tick = 0; tick < 60; ++tick) {
+    space.save(saved);
+    for (int guess = 0; guess < depth; ++guess) {
+      recorder.apply(push<S>(player, -1));
+      recorder.step();
+    }
+    if (depth > 0) space.restore(saved);
+    if (tick % 5 == 0) recorder.apply(push<S>(player, 1));
+    recorder.step();
+  }
+  lastHash = space.hash();
+  recorder.finish();
+  return bytes;
+}
+
+TYPED_TEST(RecorderRollbackTest, WhatWasTakenBackIsNotInTheRecording) {
+  std::uint64_t hashOfPlain = 0;
+  const Bytes plain = match<TypeParam>(0, hashOfPlain);
+  for (const int depth : {1, 2, 8}) {
+    std::uint64_t hash = 0;
+    EXPECT_EQ(match<TypeParam>(depth, hash), plain) << depth;
+    EXPECT_EQ(hash, hashOfPlain) << depth;
+  }
+  EXPECT_TRUE(verify<TypeParam>(plain, namedHandlerWiring<TypeParam>()).matches);
+}
+
+TYPED_TEST(RecorderRollbackTest, ACommandWithoutAStepIsTakenBack) {
+  Space<TypeParam> space;
+  const BodyId player = fillSmall(space);
+  const SavedSpace<TypeParam> start = space.save();
+  Bytes bytes;
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, bytes);
+  recorder.apply(push<TypeParam>(player, 3));
+  space.restore(start);
+  recorder.step();
+  recorder.finish();
+
+  RecordingReader<TypeParam> reader(bytes);
+
+  EXPECT_EQ(reader.next(), RecordingItem::step);
+  EXPECT_TRUE(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()).matches);
+}
+
+TYPED_TEST(RecorderRollbackTest, AGameThatStepsByItselfIsFollowed) {
+  Space<TypeParam> space;
+  fillSmall(space);
+  Bytes bytes;
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, bytes);
+  SavedSpace<TypeParam> saved;
+  for (int i = 0; i < 40; ++i) {
+    if (i == 20) space.save(saved);
+    if (i == 30) space.restore(saved);
+    space.step(kTick<TypeParam>);
+    recorder.stepped();
+  }
+  EXPECT_EQ(recorder.ticks(), 30u);
+  recorder.finish();
+
+  EXPECT_TRUE(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()).matches);
+}
+
+// With a long match, most of the recording is with the sink when the world goes back.
+TYPED_TEST(RecorderRollbackTest, WorldsThatAreNotTheRecordingsAreRefusedUntilOneIs) {
+  Space<TypeParam> space;
+  const BodyId player = fillSmall(space);
+  Bytes bytes;
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, bytes);
+  recorder.setRewindTicks(100);
+  const SavedSpace<TypeParam> start = space.save();
+  for (int i = 0; i < 1500; ++i) recorder.step();
+  const SavedSpace<TypeParam> between = [&] {
+    const SavedSpace<TypeParam> good = space.save();
+    space.body(player).setUserData(77);
+    const SavedSpace<TypeParam> strange = space.save();
+    space.restore(good);
+    return strange;
+  }();
+  SavedSpace<TypeParam> oldest;
+  space.save(oldest);
+  for (int i = 0; i < 100; ++i) recorder.step();
+
+  space.restore(start);
+  EXPECT_THROW(recorder.step(), ForeignWorld);
+  space.restore(between);
+  EXPECT_THROW(recorder.apply(push<TypeParam>(player, 1)), ForeignWorld);
+  space.restore(oldest);
+  recorder.step();
+  recorder.finish();
+
+  EXPECT_EQ(recorder.ticks(), 1501u);
+  EXPECT_TRUE(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()).matches);
+}
+
+TYPED_TEST(RecorderRollbackTest, WhatComesAfterTheLastStepIsLeftOutAndRefusedByReaders) {
+  Space<TypeParam> space;
+  const BodyId player = fillSmall(space);
+  Bytes bytes;
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, bytes);
+  recorder.step();
+  recorder.apply(push<TypeParam>(player, 3));
+  recorder.finish();
+  EXPECT_TRUE(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()).matches);
+
+  // A remove of that body, by hand: item, kind, id.
+  const std::size_t end = bytes.size() - (1 + 8 + 8);
+  const auto index = static_cast<std::uint8_t>(player.index);
+  const auto generation = static_cast<std::uint8_t>(player.generation);
+  const Bytes command = {1, 7, index, 0, 0, 0, generation, 0, 0, 0};
+  bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(end), command.begin(), command.end());
+  mendChecksum(bytes);
+  try {
+    verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>());
+    ADD_FAILURE() << "not refused";
+  } catch (const FormatError& error) {
+    EXPECT_EQ(error.offset(), end);
+  }
+}
+
+TYPED_TEST(RecorderRollbackTest, ARecordingWithoutAStepIsRefused) {
+  Space<TypeParam> space;
+  fillSmall(space);
+  Bytes bytes;
+  Recorder<TypeParam>(space, kTick<TypeParam>, bytes).finish();
+
+  EXPECT_THROW(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()), FormatError);
+}
+
+}  // namespace
+}  // namespace samestep
