@@ -20,6 +20,15 @@ constexpr std::int64_t kRefreshMilliseconds = 200;
 
 }  // namespace
 
+void addScalarOption(CLI::App& app, std::string& scalar) {
+  std::vector<std::string> names{"fixed"};
+  if (ScalarTraits<double>::kSupported) names.emplace_back("double");
+  if (ScalarTraits<CheckedFixed>::kSupported) names.emplace_back("checked");
+  app.add_option("--scalar", scalar, "The number type that the world is computed with")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+}
+
 KernelTarget ComputeOptions::target() const {
   KernelTarget target = KernelTarget::best;
   findKernel(kernel, target);
@@ -33,6 +42,22 @@ std::vector<std::string> kernelNames() {
   std::vector<std::string> names;
   for (const KernelTarget target : kKernelTargets) names.emplace_back(kernelName(target));
   return names;
+}
+
+void addComputeOptions(CLI::App& app, ComputeOptions& options) {
+  app.add_option("--kernel", options.kernel,
+                 "The processor instructions to solve contacts with; no hash differs")
+      ->check(CLI::IsMember(kernelNames()))
+      ->capture_default_str();
+  app.add_option("--workers", options.workers,
+                 "How many threads share all that can be shared; no hash differs")
+      ->check(CLI::Range(1, WorkerPool::kMostWorkers))
+      ->capture_default_str();
+}
+
+void addTicksOption(CLI::App& app, std::uint64_t& ticks) {
+  app.add_option("--ticks", ticks, "How many steps to make; as the scene says if not given")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40));
 }
 
 std::int64_t milliseconds() {

@@ -2,6 +2,7 @@
 // What the parts of the program share.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <exception>
 #include <span>
@@ -31,6 +32,22 @@ class Unusable : public std::exception {
   std::string reason_;
 };
 
+/// Each adds one word of the command line; running it leaves the exit code in `result`.
+void addScenes(CLI::App& app, int& result);
+void addHash(CLI::App& app, int& result);
+void addRecord(CLI::App& app, int& result);
+void addVerify(CLI::App& app, int& result);
+void addDiff(CLI::App& app, int& result);
+void addDraw(CLI::App& app, int& result);
+void addChart(CLI::App& app, int& result);
+void addEnvelope(CLI::App& app, int& result);
+
+/// Adds --scalar with the scalars of this build.
+void addScalarOption(CLI::App& app, std::string& scalar);
+
+/// Adds --ticks; 0 stands for not given.
+void addTicksOption(CLI::App& app, std::uint64_t& ticks);
+
 /// Who computes: no result depends on it.
 struct ComputeOptions {
   std::string kernel = "best";
@@ -41,6 +58,9 @@ struct ComputeOptions {
 
 /// Of all kernels, those that this machine lacks, too.
 std::vector<std::string> kernelNames();
+
+/// Adds --kernel and --workers.
+void addComputeOptions(CLI::App& app, ComputeOptions& options);
 
 /// Calls visit(S()) for the scalar of that name.
 /// @throws Unusable where this build lacks it

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
-#include "cli/commands.h"
+#include "cli/program.h"
 #include "study/chart_sweep.h"
 
 namespace samestep::program {
 namespace {
 
-int run(const ChartOptions& options) {
+struct Options {
+  std::string scene;
+  std::string picture;
+  std::string csv;
+  std::uint64_t steps = 0;
+  int rounds = 3;
+  std::vector<std::string> kernels;
+};
+
+int run(const Options& options) {
   const SceneSource source = SceneSource::find(options.scene);
   checkWritable(options.picture);
   if (!options.csv.empty()) checkWritable(options.csv);
@@ -38,6 +47,26 @@ int run(const ChartOptions& options) {
 
 }  // namespace
 
-int chartSolvers(const ChartOptions& options) { return run(options); }
+void addChart(CLI::App& app, int& result) {
+  CLI::App* word = app.add_subcommand(
+      "chart", "Run a scene with every solver setting and draw speed against accuracy as an SVG picture");
+  auto options = std::make_shared<Options>();
+  word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")
+      ->required();
+  word->add_option("-o,--output", options->picture, "The SVG file to write")->required();
+  word->add_option("--csv", options->csv, "Also write the figures to this file");
+  word->add_option("--rounds", options->rounds,
+                   "Rounds in which the settings take turns; the time of each is its median")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  word->add_option("--kernel", options->kernels,
+                   "Give the soft step a line for these processor instructions; may be given several times, "
+                   "the best of this machine if not given")
+      ->check(CLI::IsMember(kernelNames()));
+  word->add_option("--ticks", options->steps,
+                   "How many steps to make; if not given 330, or what the scene's exact answer is for")
+      ->check(CLI::Range(std::uint64_t{6}, std::uint64_t{1} << 20));
+  word->callback([options, &result] { result = run(*options); });
+}
 
 }  // namespace samestep::program

@@ -4,10 +4,16 @@
 #include <samestep/named_handlers.h>
 #include <samestep/replay_diff.h>
 
-#include "cli/commands.h"
+#include "cli/program.h"
 
 namespace samestep::program {
 namespace {
+
+struct Options {
+  std::string a;
+  std::string b;
+  std::uint32_t most = 5;
+};
 
 unsigned long long shown(std::uint64_t number) { return number; }
 
@@ -61,7 +67,7 @@ void reportWorlds(const ReplayDifference& difference) {
 }
 
 template <Scalar S>
-int run(const DiffOptions& options, std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
+int run(const Options& options, std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
   std::uint64_t ticksA = 0;
   std::uint64_t ticksB = 0;
   if (!usable<S>(options.a, a, ticksA) || !usable<S>(options.b, b, ticksB)) return kUnusable;
@@ -86,7 +92,7 @@ int run(const DiffOptions& options, std::span<const std::uint8_t> a, std::span<c
   return kMismatch;
 }
 
-int diff(const DiffOptions& options) {
+int diff(const Options& options) {
   const std::vector<std::uint8_t> a = readFile(options.a);
   const std::vector<std::uint8_t> b = readFile(options.b);
   RecordingInfo infoA;
@@ -101,6 +107,16 @@ int diff(const DiffOptions& options) {
 
 }  // namespace
 
-int diffRecordings(const DiffOptions& options) { return diff(options); }
+void addDiff(CLI::App& app, int& result) {
+  CLI::App* word = app.add_subcommand(
+      "diff", "Replay two recordings and find the first tick, object and field in which their worlds differ");
+  auto options = std::make_shared<Options>();
+  word->add_option("A", options->a, "A recording")->required();
+  word->add_option("B", options->b, "Another one")->required();
+  word->add_option("--fields", options->most, "How many differing fields to show")
+      ->check(CLI::Range(1u, 1000000u))
+      ->capture_default_str();
+  word->callback([options, &result] { result = diff(*options); });
+}
 
 }  // namespace samestep::program

@@ -7,13 +7,20 @@
 #include <samestep/replay.h>
 #include <samestep/scene.h>
 
-#include "cli/commands.h"
+#include "cli/program.h"
 
 namespace samestep::program {
 namespace {
 
+struct Options {
+  std::string source;
+  std::string file;
+  std::string scalar = "fixed";
+  std::uint64_t tick = 0;
+};
+
 template <Scalar S>
-void write(const DrawOptions& options, const Space<S>& space) {
+void write(const Options& options, const Space<S>& space) {
   const std::string caption = options.source + " · tick " + std::to_string(options.tick) + " · " +
                               std::to_string(space.bodyCount()) + " bodies · hash " + hex(space.hash());
   writeFile(options.file, drawSvg(space, caption));
@@ -22,7 +29,7 @@ void write(const DrawOptions& options, const Space<S>& space) {
 }
 
 template <Scalar S>
-int drawScene(const DrawOptions& options) {
+int drawScene(const Options& options) {
   Scene<S> scene(SceneSource::find(options.source));
   Progress progress("draw", options.tick);
   while (scene.tick() < options.tick) {
@@ -34,7 +41,7 @@ int drawScene(const DrawOptions& options) {
 }
 
 template <Scalar S>
-int drawRecording(const DrawOptions& options, std::span<const std::uint8_t> bytes) {
+int drawRecording(const Options& options, std::span<const std::uint8_t> bytes) {
   Replay<S> replay(bytes, namedHandlerWiring<S>());
   if (options.tick > replay.ticks()) {
     throw Unusable(options.source + ": ends at tick " + std::to_string(replay.ticks()));
@@ -48,7 +55,7 @@ int drawRecording(const DrawOptions& options, std::span<const std::uint8_t> byte
   return kGood;
 }
 
-int draw(const DrawOptions& options) {
+int draw(const Options& options) {
   std::error_code error;
   const bool file = std::filesystem::is_regular_file(options.source, error);
   if (!file || options.source.ends_with(".json")) {
@@ -66,6 +73,16 @@ int draw(const DrawOptions& options) {
 
 }  // namespace
 
-int drawTick(const DrawOptions& options) { return draw(options); }
+void addDraw(CLI::App& app, int& result) {
+  CLI::App* word = app.add_subcommand("draw", "Draw one tick of a scene or recording as an SVG picture");
+  auto options = std::make_shared<Options>();
+  word->add_option("SCENE|FILE", options->source, "A scene (name or path) or a recording")->required();
+  word->add_option("--tick", options->tick, "The tick to draw; 0 is the start")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 40))
+      ->required();
+  word->add_option("-o,--output", options->file, "The SVG file to write")->required();
+  addScalarOption(*word, options->scalar);
+  word->callback([options, &result] { result = draw(*options); });
+}
 
 }  // namespace samestep::program

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
-#include "cli/commands.h"
+#include "cli/program.h"
 #include "study/envelope.h"
 
 namespace samestep::program {
 namespace {
 
-int run(const EnvelopeOptions& options) {
+struct Options {
+  std::string ladder;
+  std::string csv;
+};
+
+int run(const Options& options) {
   if (!options.csv.empty()) checkWritable(options.csv);
   std::vector<const Ladder*> chosen;
   for (const Ladder& ladder : ladders()) {
@@ -34,12 +39,16 @@ int run(const EnvelopeOptions& options) {
 
 }  // namespace
 
-int climbLadders(const EnvelopeOptions& options) { return run(options); }
-
-std::vector<std::string> ladderNames() {
+void addEnvelope(CLI::App& app, int& result) {
+  CLI::App* word = app.add_subcommand("envelope",
+                                      "Find how high a stack, how unequal masses, how fast a bullet, which "
+                                      "degenerate shapes each solver bears");
+  auto options = std::make_shared<Options>();
   std::vector<std::string> names;
   for (const Ladder& ladder : ladders()) names.emplace_back(ladder.name);
-  return names;
+  word->add_option("LADDER", options->ladder, "Climb only this one")->check(CLI::IsMember(names));
+  word->add_option("--csv", options->csv, "Also write the limits to this file");
+  word->callback([options, &result] { result = run(*options); });
 }
 
 }  // namespace samestep::program

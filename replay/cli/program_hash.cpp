@@ -5,10 +5,19 @@
 #include <samestep/scene.h>
 #include <samestep/workers.h>
 
-#include "cli/commands.h"
+#include "cli/program.h"
 
 namespace samestep::program {
 namespace {
+
+struct Options {
+  std::string scene;
+  std::string scalar = "fixed";
+  std::uint64_t ticks = 0;
+  std::uint64_t every = 1;
+  bool highWater = false;
+  ComputeOptions compute;
+};
 
 void printHighWater() {
   for (const HighWaterMark& mark : highWaterTable().marks()) {
@@ -18,7 +27,7 @@ void printHighWater() {
 }
 
 template <Scalar S>
-int run(const HashOptions& options) {
+int run(const Options& options) {
   const SceneSource source = SceneSource::find(options.scene);
   const std::uint64_t ticks = options.ticks > 0 ? options.ticks : source.summary().ticks;
   WorkerPool pool(options.compute.workers);
@@ -46,8 +55,26 @@ int run(const HashOptions& options) {
 
 }  // namespace
 
-int hashScene(const HashOptions& options) {
-  return withScalar(options.scalar, [&](auto scalar) { return run<decltype(scalar)>(options); });
+void addHash(CLI::App& app, int& result) {
+  CLI::App* word =
+      app.add_subcommand("hash", "Run a scene and print a fingerprint of its world after every tick");
+  auto options = std::make_shared<Options>();
+  word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")
+      ->required();
+  addScalarOption(*word, options->scalar);
+  addTicksOption(*word, options->ticks);
+  word->add_option("--every", options->every, "Print only every K-th tick")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+      ->capture_default_str();
+  addComputeOptions(*word, options->compute);
+  word->add_flag("--high-water", options->highWater,
+                 "With --scalar checked: print the largest value that each formula of the engine had");
+  word->callback([options, &result] {
+    if (options->highWater && options->scalar != "checked") {
+      throw CLI::ValidationError("--high-water", "only checked numbers are recorded: add --scalar checked");
+    }
+    result = withScalar(options->scalar, [&](auto scalar) { return run<decltype(scalar)>(*options); });
+  });
 }
 
 }  // namespace samestep::program

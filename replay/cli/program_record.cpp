@@ -4,13 +4,20 @@
 #include <samestep/recorder.h>
 #include <samestep/scene.h>
 
-#include "cli/commands.h"
+#include "cli/program.h"
 
 namespace samestep::program {
 namespace {
 
+struct Options {
+  std::string scene;
+  std::string file;
+  std::string scalar = "fixed";
+  std::uint64_t ticks = 0;
+};
+
 template <Scalar S>
-int run(const RecordOptions& options) {
+int run(const Options& options) {
   const SceneSource source = SceneSource::find(options.scene);
   const std::uint64_t ticks = options.ticks > 0 ? options.ticks : source.summary().ticks;
   Scene<S> scene(source);
@@ -36,8 +43,19 @@ int run(const RecordOptions& options) {
 
 }  // namespace
 
-int recordScene(const RecordOptions& options) {
-  return withScalar(options.scalar, [&](auto scalar) { return run<decltype(scalar)>(options); });
+void addRecord(CLI::App& app, int& result) {
+  CLI::App* word = app.add_subcommand(
+      "record",
+      "Run a scene and write down its start, everything done to it and a fingerprint of every tick");
+  auto options = std::make_shared<Options>();
+  word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")
+      ->required();
+  word->add_option("-o,--output", options->file, "The recording to write")->required();
+  addScalarOption(*word, options->scalar);
+  addTicksOption(*word, options->ticks);
+  word->callback([options, &result] {
+    result = withScalar(options->scalar, [&](auto scalar) { return run<decltype(scalar)>(*options); });
+  });
 }
 
 }  // namespace samestep::program

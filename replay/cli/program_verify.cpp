@@ -5,7 +5,7 @@
 #include <samestep/verify.h>
 #include <samestep/workers.h>
 
-#include "cli/commands.h"
+#include "cli/program.h"
 
 namespace samestep::program {
 namespace {
@@ -62,16 +62,33 @@ int verifyFile(const std::string& file, VerifyOptions options, std::int64_t seco
 
 }  // namespace
 
-int verifyFiles(const VerifyFilesOptions& options) {
-  VerifyOptions each;
-  each.kernel = options.compute.target();
-  each.limits = options.limits;
-  WorkerPool pool(options.compute.workers);
-  each.workers = &pool;
-  int result = kGood;
-  for (const std::string& file : options.files)
-    result = std::max(result, verifyFile(file, each, options.seconds));
-  return result;
+void addVerify(CLI::App& app, int& result) {
+  CLI::App* word = app.add_subcommand(
+      "verify", "Replay recordings and check that every tick comes out as it was recorded");
+  auto files = std::make_shared<std::vector<std::string>>();
+  word->add_option("FILE", *files, "Recordings, as 'samestep record' or a game wrote them")->required();
+  auto compute = std::make_shared<ComputeOptions>();
+  addComputeOptions(*word, *compute);
+  // For recordings from strangers.
+  auto limits = std::make_shared<WorldLimits>();
+  auto seconds = std::make_shared<std::int64_t>(0);
+  word->add_option("--max-bodies", limits->bodies, "Refuse recordings of worlds with more bodies")
+      ->capture_default_str();
+  word->add_option("--max-shapes", limits->shapes, "Refuse those with more shapes")->capture_default_str();
+  word->add_option("--max-pairs", limits->pairs, "Refuse those with more shapes near each other")
+      ->check(CLI::Range(std::uint32_t{0}, kMostPairs))
+      ->capture_default_str();
+  word->add_option("--max-seconds", *seconds, "Give up after so many seconds for a recording")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30));
+  word->callback([files, compute, limits, seconds, &result] {
+    VerifyOptions options;
+    options.kernel = compute->target();
+    options.limits = *limits;
+    WorkerPool pool(compute->workers);
+    options.workers = &pool;
+    result = kGood;
+    for (const std::string& file : *files) result = std::max(result, verifyFile(file, options, *seconds));
+  });
 }
 
 }  // namespace samestep::program
