@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The program: scenes, their hashes, recordings and pictures.
+#include <algorithm>
 #include <cstdio>
 
 #include <samestep/error.h>
@@ -8,6 +9,7 @@
 #include <samestep/version.h>
 
 #include "cli/program.h"
+#include "cli/suggest.h"
 
 namespace {
 
@@ -52,7 +54,15 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kGood : kUnusable;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    const std::string suggested =
+        suggestion(app, {argv + 1, static_cast<std::size_t>(std::max(argc - 1, 0))});
+    if (suggested.empty()) {
+      app.exit(error);
+    } else {
+      std::fprintf(stderr, "samestep: %s\n", suggested.c_str());
+    }
+    return kUnusable;
   } catch (const std::exception& error) {
     std::fflush(stdout);
     std::fprintf(stderr, "samestep: %s\n", error.what());

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>  // not in results: shown to people only
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <iterator>
 
 #include <samestep/error.h>
+#include <samestep/recording.h>
 #include <samestep/workers.h>
 
 namespace samestep::program {
@@ -102,35 +104,93 @@ void StatusLine::show(const std::string& text) {
   shown_ = terminal_;
 }
 
-std::vector<std::uint8_t> readFile(const std::string& path) {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the first bytes of a file that is no recording look like.
+std::string seemsToBe(std::string_view first) {
+  if (first.empty()) return "the file is empty";
+  if (first.starts_with(std::string_view("\x89SAMS"))) return "this is a snapshot, not a recording";
+  const auto printable = [](char c) { return (c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t'; };
+  if (!std::all_of(first.begin(), first.end(), printable)) return "not a recording";
+  const std::string_view::size_type start = first.find_first_not_of(" \n\r\t");
+  if (start != std::string_view::npos && first[start] == '{') {
+    return "this is JSON, perhaps a scene, not a recording; 'samestep record' makes one of a scene";
+  }
+  return "this is text, not a recording";
+}
+
+/// Where a path leads to by links, which may be a file yet to be made.
+/// @throws Unusable for links that lead in a ring
+std::string behindLinks(const std::string& path) {
+  constexpr int kMostLinks = 40;
+  fs::path place(path);
+  std::error_code error;
+  for (int i = 0; i < kMostLinks; ++i) {
+    if (!fs::is_symlink(fs::symlink_status(place, error))) return place.string();
+    const fs::path target = fs::read_symlink(place, error);
+    place = target.is_absolute() ? target : place.parent_path() / target;
+  }
+  throw Unusable(path + ": cannot be written: too many links");
+}
+
+/// Whether it is there and no regular file: a device, a pipe, a socket.
+bool isWrittenThrough(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+bool writeAll(const std::string& path, std::span<const std::uint8_t> bytes) {
+  std::ofstream stream(path, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return static_cast<bool>(stream.flush());
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> readRecording(const std::string& path) {
+  constexpr std::size_t kFirstBytes = 28;
   std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) throw Unusable(path + ": cannot be read");
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream || fs::is_directory(path)) throw Unusable(path + ": cannot be read");
+  std::vector<std::uint8_t> bytes(kFirstBytes);
+  stream.read(reinterpret_cast<char*>(bytes.data()), kFirstBytes);
+  if (stream.bad()) throw Unusable(path + ": cannot be read");
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  if (bytes.empty() || bytes[0] != 0x89 || (bytes.size() > 4 && bytes[4] == 'S')) {
+    const std::string_view first(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    throw Unusable(path + ": offset 0: " + seemsToBe(first));
+  }
+  recordingInfo(bytes);
+  bytes.insert(bytes.end(), std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   if (stream.bad()) throw Unusable(path + ": cannot be read");
   return bytes;
 }
 
 void writeFile(const std::string& path, std::span<const std::uint8_t> bytes) {
-  const std::string part = path + ".part";
-  {
-    std::ofstream stream(part, std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (!stream.flush()) {
-      std::remove(part.c_str());
-      throw Unusable(path + ": cannot be written");
-    }
+  const std::string place = behindLinks(path);
+  if (isWrittenThrough(place)) {
+    if (!writeAll(place, bytes)) throw Unusable(path + ": cannot be written");
+    return;
   }
+  const std::string part = place + ".part";
   std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) {
-    std::remove(part.c_str());
-    throw Unusable(path + ": cannot be written: " + error.message());
-  }
+  const bool written = writeAll(part, bytes);
+  if (written) fs::rename(part, place, error);
+  if (written && !error) return;
+  std::remove(part.c_str());
+  throw Unusable(path + ": cannot be written" + (error ? ": " + error.message() : ""));
 }
 
 void checkWritable(const std::string& path) {
-  const std::string part = path + ".part";
-  const bool writable = !std::filesystem::is_directory(path) && std::ofstream(part, std::ios::binary);
+  const std::string place = behindLinks(path);
+  if (isWrittenThrough(place)) {
+    if (access(place.c_str(), W_OK) != 0) throw Unusable(path + ": cannot be written");
+    return;
+  }
+  const std::string part = place + ".part";
+  const bool writable = !fs::is_directory(place) && std::ofstream(part, std::ios::binary);
   std::remove(part.c_str());
   if (!writable) throw Unusable(path + ": cannot be written");
 }

@@ -120,9 +120,11 @@ class StatusLine {
 /// Milliseconds since some point in the past.
 std::int64_t milliseconds();
 
-/// @throws Unusable
-std::vector<std::uint8_t> readFile(const std::string& path);
-/// Written beside and moved into place, so that a file is whole or not there.
+/// A recording, whose first bytes are looked at before the rest is read.
+/// @throws Unusable for what is none, saying what it seems to be; FormatError
+std::vector<std::uint8_t> readRecording(const std::string& path);
+/// A regular file is written beside and moved into place, so that it is whole or not there; a link stays one,
+/// and what it leads to is written. A device or pipe is written through.
 /// @throws Unusable
 void writeFile(const std::string& path, std::span<const std::uint8_t> bytes);
 void writeFile(const std::string& path, const std::string& text);

@@ -93,8 +93,17 @@ int run(const Options& options, std::span<const std::uint8_t> a, std::span<const
 }
 
 int diff(const Options& options) {
-  const std::vector<std::uint8_t> a = readFile(options.a);
-  const std::vector<std::uint8_t> b = readFile(options.b);
+  std::vector<std::uint8_t> a;
+  std::vector<std::uint8_t> b;
+  for (const bool first : {true, false}) {
+    const std::string& file = first ? options.a : options.b;
+    try {
+      (first ? a : b) = readRecording(file);
+    } catch (const FormatError& error) {
+      tell(file, error);
+      return kUnusable;
+    }
+  }
   RecordingInfo infoA;
   RecordingInfo infoB;
   if (!readInfo(options.a, a, infoA) || !readInfo(options.b, b, infoB)) return kUnusable;

@@ -17,7 +17,16 @@ struct Options {
   std::string file;
   std::string scalar = "fixed";
   std::uint64_t tick = 0;
+  bool scalarGiven = false;
 };
+
+/// Only SVG is written: another ending would promise another format.
+void checkPicture(const std::string& file) {
+  checkWritable(file);
+  for (const char* other : {".png", ".jpg", ".jpeg", ".gif", ".webp", ".pdf", ".bmp"}) {
+    if (file.ends_with(other)) throw Unusable(file + ": pictures are written as SVG; name the file .svg");
+  }
+}
 
 template <Scalar S>
 void write(const Options& options, const Space<S>& space) {
@@ -56,13 +65,17 @@ int drawRecording(const Options& options, std::span<const std::uint8_t> bytes) {
 }
 
 int draw(const Options& options) {
+  checkPicture(options.file);
   std::error_code error;
   const bool file = std::filesystem::is_regular_file(options.source, error);
   if (!file || options.source.ends_with(".json")) {
     return withScalar(options.scalar, [&](auto scalar) { return drawScene<decltype(scalar)>(options); });
   }
-  const std::vector<std::uint8_t> bytes = readFile(options.source);
+  if (options.scalarGiven) {
+    throw Unusable(options.source + ": a recording has its scalar; --scalar is for scenes");
+  }
   try {
+    const std::vector<std::uint8_t> bytes = readRecording(options.source);
     return withScalarOf(recordingInfo(bytes).scalar,
                         [&](auto scalar) { return drawRecording<decltype(scalar)>(options, bytes); });
   } catch (const FormatError& problem) {
@@ -82,7 +95,10 @@ void addDraw(CLI::App& app, int& result) {
       ->required();
   word->add_option("-o,--output", options->file, "The SVG file to write")->required();
   addScalarOption(*word, options->scalar);
-  word->callback([options, &result] { result = draw(*options); });
+  word->callback([options, word, &result] {
+    options->scalarGiven = word->count("--scalar") > 0;
+    result = draw(*options);
+  });
 }
 
 }  // namespace samestep::program

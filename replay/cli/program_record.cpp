@@ -19,6 +19,7 @@ struct Options {
 template <Scalar S>
 int run(const Options& options) {
   const SceneSource source = SceneSource::find(options.scene);
+  checkWritable(options.file);
   const std::uint64_t ticks = options.ticks > 0 ? options.ticks : source.summary().ticks;
   Scene<S> scene(source);
   std::vector<std::uint8_t> bytes;

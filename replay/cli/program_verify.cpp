@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 
 #include <samestep/verify.h>
@@ -11,6 +12,14 @@ namespace samestep::program {
 namespace {
 
 void report(const std::string& file, const VerifyResult& result, std::int64_t milliseconds) {
+  if (result.unexpected != nullptr) {
+    std::printf("%s: UNEXPECTED: %s is not as expected", file.c_str(), result.unexpected);
+    if (result.unexpectedOffset > 0) {
+      std::printf(" (offset %llu)", static_cast<unsigned long long>(result.unexpectedOffset));
+    }
+    std::printf("\n");
+    return;
+  }
   if (!result.matches) {
     std::printf("%s: MISMATCH at tick %llu of %llu: recorded %s, computed %s\n", file.c_str(),
                 static_cast<unsigned long long>(result.firstWrongTick),
@@ -40,7 +49,7 @@ struct Watch {
 
 int verifyFile(const std::string& file, VerifyOptions options, std::int64_t seconds) {
   try {
-    const std::vector<std::uint8_t> bytes = readFile(file);
+    const std::vector<std::uint8_t> bytes = readRecording(file);
     const std::int64_t start = milliseconds();
     Watch watch;
     if (seconds != 0) watch.end = start + seconds * 1000;
@@ -51,13 +60,91 @@ int verifyFile(const std::string& file, VerifyOptions options, std::int64_t seco
     const VerifyResult result = verify(bytes, options);
     const std::int64_t took = milliseconds() - start;
     watch.progress.clear();
-    if (result.stopped) throw Unusable("takes longer than " + std::to_string(seconds) + " s");
+    if (result.stopped) throw Unusable(file + ": takes longer than " + std::to_string(seconds) + " s");
     report(file, result, took);
+    // A batch that is killed keeps the verdicts it has come to.
+    std::fflush(stdout);
     return result.matches ? kGood : kMismatch;
   } catch (const std::exception& error) {
     tell(file, error);
     return kUnusable;
   }
+}
+
+/// What a server knows of the match, as it stands in the arguments.
+struct ExpectedWords {
+  std::string firstHash;
+  std::string timeStep;
+  std::string scalar;
+  std::vector<std::string> commands;
+  std::uint64_t ticks = 0;
+  std::uint64_t firstTick = 0;
+};
+
+bool readHash(const std::string& text, std::uint64_t& hash) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+  return text.size() == 16 && error == std::errc() && end == text.data() + text.size();
+}
+
+/// "1/60".
+bool readTimeStep(const std::string& text, std::uint32_t& rate) {
+  if (!text.starts_with("1/")) return false;
+  const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), rate);
+  return error == std::errc() && end == text.data() + text.size() && rate > 0 && rate <= 1000000;
+}
+
+std::vector<std::string> commandWords() {
+  std::vector<std::string> words{"none"};
+  for (std::uint8_t kind = 0; kind < kCommandKinds; ++kind) {
+    words.emplace_back(commandName(static_cast<CommandKind>(kind)));
+  }
+  return words;
+}
+
+Expectations expectationsOf(const CLI::App& word, const ExpectedWords& words) {
+  Expectations expected;
+  std::uint64_t hash = 0;
+  std::uint32_t rate = 0;
+  if (readHash(words.firstHash, hash)) expected.firstHash = hash;
+  if (readTimeStep(words.timeStep, rate)) expected.stepsPerSecond = rate;
+  if (!words.scalar.empty()) {
+    expected.scalar = words.scalar == "fixed" ? ScalarKind::fixed : ScalarKind::float64;
+  }
+  if (word.count("--ticks") > 0) expected.ticks = words.ticks;
+  if (word.count("--first-tick") > 0) expected.firstTick = words.firstTick;
+  if (words.commands.empty()) return expected;
+  expected.commands = 0;
+  for (std::uint8_t kind = 0; kind < kCommandKinds; ++kind) {
+    const std::string name = commandName(static_cast<CommandKind>(kind));
+    const bool allowed =
+        std::find(words.commands.begin(), words.commands.end(), name) != words.commands.end();
+    if (allowed) expected.commands |= 1u << kind;
+  }
+  return expected;
+}
+
+/// Adds the options of expectations.
+void addExpectations(CLI::App& word, ExpectedWords& words) {
+  const auto hashes = [](const std::string& text) {
+    std::uint64_t hash = 0;
+    return readHash(text, hash) ? std::string() : "16 hexadecimal digits are wanted, not " + text;
+  };
+  const auto steps = [](const std::string& text) {
+    std::uint32_t rate = 0;
+    return readTimeStep(text, rate) ? std::string() : "1/60 or the like is wanted, not " + text;
+  };
+  word.add_option("--expect-first-hash", words.firstHash, "The hash that the world must have at the start")
+      ->check(CLI::Validator(hashes, "HASH"));
+  word.add_option("--time-step", words.timeStep, "How long each step must be, in seconds, as 1/60")
+      ->check(CLI::Validator(steps, "1/N"));
+  word.add_option("--scalar", words.scalar, "The number type that it must be recorded with")
+      ->check(CLI::IsMember({"fixed", "double"}));
+  word.add_option("--ticks", words.ticks, "How many steps it must have")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40));
+  word.add_option("--first-tick", words.firstTick, "How many steps the world must have made at the start");
+  word.add_option("--allow-commands", words.commands, "The kinds of command there may be, or none")
+      ->delimiter(',')
+      ->check(CLI::IsMember(commandWords()));
 }
 
 }  // namespace
@@ -69,6 +156,8 @@ void addVerify(CLI::App& app, int& result) {
   word->add_option("FILE", *files, "Recordings, as 'samestep record' or a game wrote them")->required();
   auto compute = std::make_shared<ComputeOptions>();
   addComputeOptions(*word, *compute);
+  auto expected = std::make_shared<ExpectedWords>();
+  addExpectations(*word, *expected);
   // For recordings from strangers.
   auto limits = std::make_shared<WorldLimits>();
   auto seconds = std::make_shared<std::int64_t>(0);
@@ -80,10 +169,11 @@ void addVerify(CLI::App& app, int& result) {
       ->capture_default_str();
   word->add_option("--max-seconds", *seconds, "Give up after so many seconds for a recording")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30));
-  word->callback([files, compute, limits, seconds, &result] {
+  word->callback([files, compute, limits, seconds, expected, word, &result] {
     VerifyOptions options;
     options.kernel = compute->target();
     options.limits = *limits;
+    options.expected = expectationsOf(*word, *expected);
     WorkerPool pool(compute->workers);
     options.workers = &pool;
     result = kGood;

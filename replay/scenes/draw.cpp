@@ -192,7 +192,7 @@ class Artist {
     // The rounding is a thick line; a thicker one beneath it is its edge.
     if (shape.radius() > S(0)) {
       filled(colours.line, colours.line, shape.radius() * S(2) + unit_, "");
-      filled(colours.fill, colours.fill, shape.radius() * S(2) - unit_, style);
+      filled(colours.fill, colours.fill, max(shape.radius() * S(2) - unit_, S(0)), style);
     } else {
       filled(colours.fill, colours.line, unit_, style);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Drives the built program as a user does.
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -149,6 +150,78 @@ TEST_F(ProgramTest, VerifyHasLimitsForRecordingsFromStrangers) {
        {"--max-bodies 5", "--max-shapes 5", "--max-pairs 3", "--max-pairs -1", "--max-seconds 0"}) {
     EXPECT_EQ(verifyWith(option).code, 2) << option;
   }
+}
+
+TEST_F(ProgramTest, WordsAndOptionsThatAreNoneGetASuggestion) {
+  const auto said = [&](const char* arguments) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    return outcome.error;
+  };
+  EXPECT_EQ(said("hsh stack"), "samestep: no word hsh; did you mean hash?\n");
+  EXPECT_THAT(said("foo"), HasSubstr("no word foo; there are scenes, hash, record, verify"));
+  EXPECT_EQ(said("hash stack --tick 5"), "samestep: no option --tick; did you mean --ticks?\n");
+  EXPECT_EQ(said("verify x --max-body=3"), "samestep: no option --max-body; did you mean --max-bodies?\n");
+}
+
+TEST_F(ProgramTest, VerifySaysWhatAFileIsThatIsNoRecording) {
+  write("a.txt", "dear verifier\n");
+  write("a.json", "{\"samestep\": 1}");
+  write("a.bin", std::string("\x00\x01\x02", 3));
+  const auto said = [&](const char* name) {
+    const Outcome outcome = run("verify '" + file(name) + "'");
+    EXPECT_EQ(outcome.code, 2) << name;
+    return outcome.error;
+  };
+  EXPECT_THAT(said("a.txt"), HasSubstr("a.txt: offset 0: this is text, not a recording"));
+  EXPECT_THAT(said("a.json"), HasSubstr("this is JSON, perhaps a scene"));
+  EXPECT_THAT(said("a.bin"), HasSubstr("a.bin: offset 0: not a recording"));
+}
+
+TEST_F(ProgramTest, VerifyHoldsRecordingsAgainstWhatTheMatchWasToBe) {
+  ASSERT_EQ(run("record arena -o '" + file("a.rec") + "' --ticks 60").code, 0);
+  const auto verifyWith = [&](const std::string& option) {
+    return run("verify " + option + " '" + file("a.rec") + "'");
+  };
+
+  EXPECT_EQ(verifyWith("--ticks 60 --time-step 1/60 --scalar fixed --first-tick 0").code, 0);
+  for (const char* option : {"--ticks 61", "--time-step 1/30", "--scalar double", "--first-tick 1",
+                             "--expect-first-hash 0123456789abcdef", "--allow-commands none"}) {
+    const Outcome outcome = verifyWith(option);
+    EXPECT_EQ(outcome.code, 1) << option;
+    EXPECT_THAT(outcome.out, HasSubstr("UNEXPECTED: ")) << option;
+  }
+  for (const char* option : {"--time-step 60", "--expect-first-hash 12", "--allow-commands teleport"}) {
+    EXPECT_EQ(verifyWith(option).code, 2) << option;
+  }
+}
+
+TEST_F(ProgramTest, OutputFollowsLinksAndGoesThroughPipes) {
+  write("real.svg", "old");
+  std::filesystem::create_symlink("real.svg", file("link.svg"));
+  EXPECT_EQ(run("draw stack --tick 1 -o '" + file("link.svg") + "'").code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(file("link.svg")));
+  EXPECT_THAT(contents(file("real.svg")), HasSubstr("</svg>"));
+
+  ASSERT_EQ(mkfifo(file("pipe").c_str(), 0600), 0);
+  const std::string reader = "cat '" + file("pipe") + "' >'" + file("read.svg") + "' & ";
+  ASSERT_EQ(std::system(reader.c_str()), 0);
+  EXPECT_EQ(run("draw stack --tick 1 -o '" + file("pipe") + "'").code, 0);
+  EXPECT_TRUE(std::filesystem::is_fifo(file("pipe")));
+}
+
+TEST_F(ProgramTest, ATargetThatCannotBeWrittenIsToldBeforeTheRun) {
+  const Outcome outcome = run("record stack --ticks 1000000000 -o /no/such/folder/file");
+
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.error, HasSubstr("/no/such/folder/file: cannot be written"));
+}
+
+TEST_F(ProgramTest, DrawRefusesWhatItWouldNotDo) {
+  ASSERT_EQ(run("record stack --ticks 2 -o '" + file("a.rec") + "'").code, 0);
+  EXPECT_THAT(run("draw stack --tick 1 -o '" + file("x.png") + "'").error, HasSubstr("written as SVG"));
+  EXPECT_THAT(run("draw '" + file("a.rec") + "' --scalar fixed --tick 1 -o '" + file("x.svg") + "'").error,
+              HasSubstr("--scalar is for scenes"));
 }
 
 TEST_F(ProgramTest, ChartWritesAPictureAndACsvAndTellsTheFront) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A game's own arithmetic on double, in the shapes that compilers like to fuse: turning a vector, a product of
-// complex numbers, sums of products, in loops and alone.
+// A game's own arithmetic on double, in the shapes that compilers like to fuse: turning a vector, a product
+// of complex numbers, sums of products, in loops and alone.
 struct Pair {
   double x;
   double y;
