@@ -91,6 +91,8 @@ struct Applier {
 
     const BodyId id = given ? space.add(c.body, c.id) : space.add(c.body);
     addShapes(space, id, c.shapes, given);
+    // The velocity is that of the centre of mass, which the shapes have moved.
+    if (c.body.type() != BodyType::staticBody) space.body(id).setVelocity(c.body.velocity());
     return id;
   }
   BodyId operator()(const Remove& c) const {

@@ -134,6 +134,9 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
       // Mass and moment come from a body's first shape.
       if (first && space.body(body).isDynamic()) shape.setDensity(surface.density);
       space.add(shape);
+      // The velocity is that of the centre of mass, which the shape has moved.
+      if (first && space.body(body).type() != BodyType::staticBody)
+        space.body(body).setVelocity(row.vector<S>(5));
     });
   });
   if (header) refuseHeader(file, 1);

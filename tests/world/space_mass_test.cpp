@@ -75,7 +75,7 @@ TYPED_TEST(SpaceMassTest, AShapeThatGetsMassTakesThePlaceOfAMassSetByHandAndLeav
 // dynamic all along.
 TYPED_TEST(SpaceMassTest, ChangesOfShapesCountWhateverTheTypeOfTheBodyMeanwhile) {
   using S = TypeParam;
-  using Test = TestFixture;
+  using Fixture = TestFixture;
   auto& space = this->space_;
   struct Parts {
     BodyId body;
@@ -93,8 +93,8 @@ TYPED_TEST(SpaceMassTest, ChangesOfShapesCountWhateverTheTypeOfTheBodyMeanwhile)
         this->setMassOfShape(of.heavy, 0);
         this->setMassOfShape(of.light, 0);
       },
-      [&](const Parts& of) { space.add(Test::disc(of.body, 5, 2)); },
-      [&](const Parts& of) { space.remove(space.add(Test::disc(of.body, 5, 2))); },
+      [&](const Parts& of) { space.add(Fixture::disc(of.body, 5, 2)); },
+      [&](const Parts& of) { space.remove(space.add(Fixture::disc(of.body, 5, 2))); },
       [&](const Parts& of) { space.replace(of.heavy, boxShape(of.body, S(1), S(1))); },
       [&](const Parts& of) {
         space.change(of.light, [](Shape<S>& s) { CircleShape<S>(s).setRadius(S(2)); });
@@ -105,8 +105,8 @@ TYPED_TEST(SpaceMassTest, ChangesOfShapesCountWhateverTheTypeOfTheBodyMeanwhile)
   const auto build = [&] {
     Parts of;
     of.body = space.add(Body<S>(S(5), S(7)));
-    of.heavy = space.add(Test::disc(of.body, 2, 4));
-    of.light = space.add(Test::disc(of.body, -2, 2));
+    of.heavy = space.add(Fixture::disc(of.body, 2, 4));
+    of.light = space.add(Fixture::disc(of.body, -2, 2));
     of.none = space.add(circleShape(of.body, S(1)));
     space.body(of.body).setMass(S(9));
     return of;
@@ -140,13 +140,13 @@ TYPED_TEST(SpaceMassTest, ABodyMadeWhatItIsKeepsItsMass) {
 
 TYPED_TEST(SpaceMassTest, WhatMovesTheCentreOfMassLeavesTheMotionOfTheMaterial) {
   using S = TypeParam;
-  using Test = TestFixture;
+  using Fixture = TestFixture;
   auto& space = this->space_;
   // A dumb-bell that spins at 10 rad/s about the origin: its right end goes up at 20 m/s.
   const auto build = [&](ShapeId* left) {
     const BodyId id = space.add(Body<S>());
-    *left = space.add(Test::disc(id, -2, 1));
-    space.add(Test::disc(id, 2, 1));
+    *left = space.add(Fixture::disc(id, -2, 1));
+    space.add(Fixture::disc(id, 2, 1));
     space.body(id).setAngularVelocity(S(10));
     return id;
   };
@@ -177,7 +177,7 @@ TYPED_TEST(SpaceMassTest, WhatMovesTheCentreOfMassLeavesTheMotionOfTheMaterial) 
   ShapeId left;
   const BodyId id = build(&left);
   space.remove(left);
-  space.add(Test::disc(id, -2, 1));
+  space.add(Fixture::disc(id, -2, 1));
   EXPECT_EQ(space.body(id).worldCenter(), Vector<S>());
   EXPECT_EQ(space.body(id).velocity(), still);
 }
