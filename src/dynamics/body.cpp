@@ -182,11 +182,13 @@ void Body<S>::forgetBias() {
 template <Scalar S>
 void Body<S>::moveCenter(const Vector<S>& center) {
   const Vector<S> origin = position();
-  if (center != centerOfMass_) {
-    // The material of the body moves on as it does, and with it what is its centre from now on.
-    const Vector<S> across = perp(rotate(center - centerOfMass_, rotation_));
-    velocity_ = heldWithin(mulAdd(across, angularVelocity_, velocity_), kMaxSpeed<S>);
-    velocityBias_ = heldWithin(mulAdd(across, angularVelocityBias_, velocityBias_), kMaxSpeed<S>);
+  // The material of the body moves on as it does, and with it what is its centre from now on. As differences
+  // of places, so that of Fixed the way by which the centre came to a place makes no difference.
+  const Vector<S> before = perp(rotate(centerOfMass_, rotation_)), after = perp(rotate(center, rotation_));
+  if (before != after) {
+    velocity_ = heldWithin(velocity_ + (after * angularVelocity_ - before * angularVelocity_), kMaxSpeed<S>);
+    velocityBias_ = heldWithin(velocityBias_ + (after * angularVelocityBias_ - before * angularVelocityBias_),
+                               kMaxSpeed<S>);
   }
   centerOfMass_ = center;
   center_ = origin + rotate(centerOfMass_, rotation_);

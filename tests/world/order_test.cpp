@@ -95,6 +95,7 @@ void enter(Space<S>& space, const Actor<S>& actor, std::uint32_t generation, Ran
   }
   // After its shapes, each of which moves the centre of mass: see docs/determinism.md.
   space.body(id).setPosition(actor.position);
+  space.body(id).setVelocity(actor.body.velocity());
 }
 
 struct Solver {
@@ -213,6 +214,8 @@ TEST(OrderOfFixedTest, TheShapesOfABodyMayComeInAnyOrderWhereverItIs) {
     Body<Fixed> body;
     body.setPosition({random.number<Fixed>(-900, 900), random.number<Fixed>(-900, 900)});
     body.setAngle(random.number<Fixed>(-3, 3));
+    body.setVelocity({random.number<Fixed>(-9, 9), random.number<Fixed>(-9, 9)});
+    body.setAngularVelocity(random.number<Fixed>(-9, 9));
     std::vector<std::uint32_t> order = {0, 1, 2, 3, 4};
     std::vector<Shape<Fixed>> shapes;
     for (int i = 0; i < 5; ++i) {
