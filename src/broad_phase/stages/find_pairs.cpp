@@ -9,7 +9,7 @@ namespace samestep {
 
 namespace {
 
-/// Whether two shapes whose boxes overlap may collide at all. MIS: queryReject
+/// Whether two shapes whose boxes overlap may collide at all.
 template <Scalar S>
 [[gnu::always_inline]] inline bool mayCollide(const ShapeTraits<S>& a, const ShapeTraits<S>& b) {
   return a.body != b.body && accepts(a.filter, b.filter);

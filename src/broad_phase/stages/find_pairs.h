@@ -10,7 +10,8 @@ namespace samestep {
 
 /// The stage that finds the pairs of shapes whose boxes are near each other. Candidates of the trees and
 /// pairs are sorted alike and walked side by side. Where a pair goes is known before any is moved, so that
-/// none moves twice, and none at all in a world at rest.
+/// none moves twice, and none at all in a world at rest. Shapes that filters or bodies keep apart are no
+/// pair. MIS: queryReject
 template <Scalar S>
 class FindPairs {
  public:

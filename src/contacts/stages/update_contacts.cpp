@@ -126,7 +126,6 @@ void UpdateContacts<S>::collidePair(StepContext<S>& step, Pair<S>& pair, bool su
   }
 }
 
-/// Takes over a collision and asks the callbacks. MIS: arbiterUpdate
 template <Scalar S>
 bool UpdateContacts<S>::applyCollision(StepContext<S>& step, Pair<S>& pair) {
   if (pair.state == ArbiterState::apart || pair.state == ArbiterState::cached) {
@@ -136,8 +135,6 @@ bool UpdateContacts<S>::applyCollision(StepContext<S>& step, Pair<S>& pair) {
   return ContactCallbacks<S>::ask(step, pair);
 }
 
-/// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
-/// MIS: spaceArbiterSetFilter
 template <Scalar S>
 void UpdateContacts<S>::expirePairs(StepContext<S>& step, const std::uint8_t* overlapping) {
   auto& pairs = step.state.pairs;

@@ -26,7 +26,10 @@ class UpdateContacts {
                     std::uint32_t end, bool surfacesKnown, CollisionStats& stats);
   /// MIS: spaceCollideShapes
   static void collidePair(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown, CollisionStats& stats);
+  /// Takes over a collision and asks the callbacks: whether the pair shall be solved. MIS: arbiterUpdate
   static bool applyCollision(StepContext<S>& step, Pair<S>& pair);
+  /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
+  /// MIS: spaceArbiterSetFilter
   void expirePairs(StepContext<S>& step, const std::uint8_t* overlapping);
   static void dropApart(StepContext<S>& step, const std::uint8_t* overlapping, std::size_t first);
 
