@@ -427,7 +427,7 @@ class Space {
   };
 
   void requireUnlocked() const;
-  StepContext<S> contextOf(S dt);
+  StepContext<S> contextOf(S dt = S(0));
   std::uint32_t firstShape(BodyId id) const;
   std::uint32_t nextShape(std::uint32_t index) const;
   /// Calls visit(arbiter, data) for each touching pair, or for those of one body. Locks the Space.

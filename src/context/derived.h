@@ -205,6 +205,14 @@ struct Derived {
   void prepareShape(std::uint32_t index, const Shape<S>& shape);
   void takeTraits(std::uint32_t index, const Shape<S>& shape);
 
+  /// The first shape of a body, by rising slot; kNone without.
+  /// @throws BodyNotFound
+  std::uint32_t firstShapeOf(const WorldState<S>& world, BodyId id) {
+    require<Fault::BodyNotFound>(world.bodies.contains(id));
+    ensure(world);
+    return firstShape[id.index];
+  }
+
   /// Notes that a body may have been moved by hand.
   void touch(std::uint32_t body);
   void touchAll(const WorldState<S>& world) {

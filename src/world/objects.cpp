@@ -10,13 +10,6 @@
 namespace samestep {
 
 template <Scalar S>
-std::uint32_t Objects<S>::firstShape(Context& world, BodyId id) {
-  require<Fault::BodyNotFound>(world.state.bodies.contains(id));
-  world.derived.ensure(world.state);
-  return world.derived.firstShape[id.index];
-}
-
-template <Scalar S>
 void Objects<S>::checkNew(const Context& world, const Body<S>& body) {
   require<Fault::DuplicateBody>(!body.id().valid() || BodyAccess<S>::owner(body) != world.wiring.serial);
   require<Fault::AttachedBody>(!body.id().valid());
@@ -46,7 +39,8 @@ void Objects<S>::setType(Context& world, BodyId id, BodyType type) {
   if (type == kept.type()) return;
   Body<S> changed = kept.detached();
   changed.setType(type);
-  for (std::uint32_t i = firstShape(world, id); i != kNone; i = world.derived.nextShape[i]) {
+  for (std::uint32_t i = world.derived.firstShapeOf(world.state, id); i != kNone;
+       i = world.derived.nextShape[i]) {
     checkShape(world.state.shapes.valueAt(i), changed);
   }
   if (changed.isDynamic() && changed.mass() == S(0)) {
@@ -92,7 +86,8 @@ MassProperties<S> Objects<S>::massOfShapes(Context& world, BodyId id, std::uint3
       }
     };
     const Shape<S>* waiting = by;
-    for (std::uint32_t i = firstShape(world, id); i != kNone; i = world.derived.nextShape[i]) {
+    for (std::uint32_t i = world.derived.firstShapeOf(world.state, id); i != kNone;
+         i = world.derived.nextShape[i]) {
       if (waiting != nullptr && i >= replaced) {
         visitShape(*waiting);
         waiting = nullptr;
@@ -124,7 +119,8 @@ MassProperties<S> Objects<S>::massOfShapes(Context& world, BodyId id, std::uint3
 template <Scalar S>
 bool Objects<S>::anyShapeWeighs(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by) {
   if (by != nullptr && by->mass() > S(0)) return true;
-  for (std::uint32_t i = firstShape(world, id); i != kNone; i = world.derived.nextShape[i]) {
+  for (std::uint32_t i = world.derived.firstShapeOf(world.state, id); i != kNone;
+       i = world.derived.nextShape[i]) {
     if (i != replaced && world.state.shapes.valueAt(i).mass() > S(0)) return true;
   }
   return false;

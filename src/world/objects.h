@@ -14,10 +14,6 @@ struct Objects {
   using Context = StepContext<S>;
   static constexpr std::uint32_t kNone = Derived<S>::kNone;
 
-  /// The first shape of a body, by rising slot; kNone without.
-  /// @throws BodyNotFound
-  static std::uint32_t firstShape(Context& world, BodyId id);
-
   static void checkNew(const Context& world, const Body<S>& body);
   /// Makes a body just stored the Space's own.
   static void attach(Context& world, BodyId id);

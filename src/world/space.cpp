@@ -87,9 +87,8 @@ Settings<S> with(Settings<S> settings, T Settings<S>::*field, std::type_identity
 template <Scalar S>
 void Space<S>::setSettings(const Settings<S>& settings) {
   check(settings);
-  const bool otherContacts =
-      settings.solver != state_.settings.solver || settings.contactMargin != state_.settings.contactMargin;
   const bool otherSolver = settings.solver != state_.settings.solver;
+  const bool otherContacts = otherSolver || settings.contactMargin != state_.settings.contactMargin;
   state_.settings = settings;
   // What sequential impulses left to push in the next step means nothing to another solver, nor later.
   if (otherSolver) state_.bodies.each([](BodyId, Body<S>& body) { BodyAccess<S>::forgetBias(body); });
@@ -175,7 +174,7 @@ void Space<S>::setBounceThreshold(S speed) {
 template <Scalar S>
 BodyId Space<S>::add(const Body<S>& body) {
   requireUnlocked();
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::checkNew(world, body);
   const BodyId id = state_.bodies.insert(body);
   Objects<S>::attach(world, id);
@@ -185,7 +184,7 @@ BodyId Space<S>::add(const Body<S>& body) {
 template <Scalar S>
 BodyId Space<S>::add(const Body<S>& body, BodyId id) {
   requireUnlocked();
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::checkNew(world, body);
   state_.bodies.insertAt(id, body);
   Objects<S>::attach(world, id);
@@ -211,7 +210,7 @@ void Space<S>::remove(BodyId id) {
   require<Fault::MainStaticBody>(id != state_.staticBody);
   require<Fault::BodyHasShapes>(firstShape(id) == ShapeId::kNoIndex);
 
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::erase(world, id);
 }
 
@@ -221,7 +220,7 @@ void Space<S>::removeWithShapes(BodyId id) {
   require<Fault::BodyNotFound>(contains(id));
   require<Fault::MainStaticBody>(id != state_.staticBody);
   LockGuard guard(*this);
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   while (firstShape(id) != ShapeId::kNoIndex) Objects<S>::erase(world, state_.shapes.idAt(firstShape(id)));
   Objects<S>::erase(world, id);
   guard.finish();
@@ -242,7 +241,7 @@ const Body<S>& Space<S>::body(BodyId id) const {
 template <Scalar S>
 void Space<S>::setType(BodyId id, BodyType type) {
   requireUnlocked();
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::setType(world, id, type);
 }
 
@@ -252,7 +251,7 @@ template <Scalar S>
 ShapeId Space<S>::add(const Shape<S>& shape) {
   requireUnlocked();
   const ShapeId id = state_.shapes.nextId();
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::insert(world, shape, id);
   return id;
 }
@@ -261,7 +260,7 @@ template <Scalar S>
 ShapeId Space<S>::add(const Shape<S>& shape, ShapeId id) {
   requireUnlocked();
   state_.shapes.checkGiven(id);
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::insert(world, shape, id);
   return id;
 }
@@ -272,7 +271,7 @@ void Space<S>::remove(ShapeId id) {
   require<Fault::ShapeNotFound>(contains(id));
 
   LockGuard guard(*this);
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::erase(world, id);
   guard.finish();
 }
@@ -284,21 +283,19 @@ const Shape<S>& Space<S>::shape(ShapeId id) const {
 
 template <Scalar S>
 void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::replace(world, id, shape, isLocked());
 }
 
 template <Scalar S>
 void Space<S>::accumulateMassFromShapes(BodyId id) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   Objects<S>::accumulateMass(world, id);
 }
 
 template <Scalar S>
 std::uint32_t Space<S>::firstShape(BodyId id) const {
-  require<Fault::BodyNotFound>(contains(id));
-  parts_->derived.ensure(state_);
-  return parts_->derived.firstShape[id.index];
+  return parts_->derived.firstShapeOf(state_, id);
 }
 
 template <Scalar S>
@@ -397,20 +394,19 @@ void bind(StepContext<S> world, const HandlerBinding& binding) {
 template <Scalar S>
 void Space<S>::addCollisionHandler(CollisionType typeA, CollisionType typeB, CallbackNumber number) {
   requireUnlocked();
-  bind(contextOf(S(0)), {typeA, typeB, number, HandlerBinding::Kind::pair});
+  bind(contextOf(), {typeA, typeB, number, HandlerBinding::Kind::pair});
 }
 
 template <Scalar S>
 void Space<S>::addWildcardHandler(CollisionType type, CallbackNumber number) {
   requireUnlocked();
-  bind(contextOf(S(0)), {type, kWildcardCollisionType, number, HandlerBinding::Kind::wildcard});
+  bind(contextOf(), {type, kWildcardCollisionType, number, HandlerBinding::Kind::wildcard});
 }
 
 template <Scalar S>
 void Space<S>::addDefaultCollisionHandler(CallbackNumber number) {
   requireUnlocked();
-  bind(contextOf(S(0)),
-       {kWildcardCollisionType, kWildcardCollisionType, number, HandlerBinding::Kind::fallback});
+  bind(contextOf(), {kWildcardCollisionType, kWildcardCollisionType, number, HandlerBinding::Kind::fallback});
 }
 
 template <Scalar S>
@@ -532,7 +528,7 @@ void Space<S>::adopt(const WorldState<S>& state) {
   requireUnlocked();
   checkAdoptable(parts_->wiring, state);
   state_ = state;
-  takeOver(contextOf(S(0)));
+  takeOver(contextOf());
 }
 
 template <Scalar S>
@@ -540,7 +536,7 @@ void Space<S>::adopt(WorldState<S>&& state) {
   requireUnlocked();
   checkAdoptable(parts_->wiring, state);
   state_ = std::move(state);
-  takeOver(contextOf(S(0)));
+  takeOver(contextOf());
 }
 
 template <Scalar S>
@@ -553,7 +549,7 @@ void Space<S>::dropCache() {
 
 template <Scalar S>
 void Space<S>::visitArbiters(const BodyId* of, void (*visit)(Arbiter<S>&, void*), void* data) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   const auto visitPair = [&](Pair<S>& pair) {
     if (!ContactCallbacks<S>::touching(pair)) return;
     Arbiter<S> arbiter = ContactCallbacks<S>::arbiterOf(world, pair);
@@ -578,56 +574,56 @@ void Space<S>::filterArbiters(BodyId body, ShapeId shape) {
   require<Fault::ShapeNotFound>(!shape.valid() ||
                                 (contains(shape) && state_.shapes.valueAt(shape.index).body() == body));
   LockGuard guard(*this);
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   ContactCallbacks<S>::dropPairs(world, body, shape);
   guard.finish();
 }
 
 template <Scalar S>
 bool Space<S>::callWildcardBeginA(Arbiter<S>& arbiter) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   return ContactCallbacks<S>::wildcardBegin(world, arbiter, false);
 }
 
 template <Scalar S>
 bool Space<S>::callWildcardBeginB(Arbiter<S>& arbiter) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   return ContactCallbacks<S>::wildcardBegin(world, arbiter, true);
 }
 
 template <Scalar S>
 bool Space<S>::callWildcardPreSolveA(Arbiter<S>& arbiter) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   return ContactCallbacks<S>::wildcardPreSolve(world, arbiter, false);
 }
 
 template <Scalar S>
 bool Space<S>::callWildcardPreSolveB(Arbiter<S>& arbiter) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   return ContactCallbacks<S>::wildcardPreSolve(world, arbiter, true);
 }
 
 template <Scalar S>
 void Space<S>::callWildcardPostSolveA(Arbiter<S>& arbiter) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   ContactCallbacks<S>::wildcardPostSolve(world, arbiter, false);
 }
 
 template <Scalar S>
 void Space<S>::callWildcardPostSolveB(Arbiter<S>& arbiter) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   ContactCallbacks<S>::wildcardPostSolve(world, arbiter, true);
 }
 
 template <Scalar S>
 void Space<S>::callWildcardSeparateA(Arbiter<S>& arbiter) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   ContactCallbacks<S>::wildcardSeparate(world, arbiter, false);
 }
 
 template <Scalar S>
 void Space<S>::callWildcardSeparateB(Arbiter<S>& arbiter) {
-  StepContext<S> world = contextOf(S(0));
+  StepContext<S> world = contextOf();
   ContactCallbacks<S>::wildcardSeparate(world, arbiter, true);
 }
 
