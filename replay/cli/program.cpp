@@ -14,6 +14,8 @@
 #include <samestep/recording.h>
 #include <samestep/workers.h>
 
+#include "recording/recording_format.h"
+
 namespace samestep::program {
 namespace {
 
@@ -151,14 +153,15 @@ bool writeAll(const std::string& path, std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 std::vector<std::uint8_t> readRecording(const std::string& path) {
-  constexpr std::size_t kFirstBytes = 28;
   std::ifstream stream(path, std::ios::binary);
   if (!stream || fs::is_directory(path)) throw Unusable(path + ": cannot be read");
-  std::vector<std::uint8_t> bytes(kFirstBytes);
-  stream.read(reinterpret_cast<char*>(bytes.data()), kFirstBytes);
+  std::vector<std::uint8_t> bytes(kWorldAt);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (stream.bad()) throw Unusable(path + ": cannot be read");
   bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  if (bytes.empty() || bytes[0] != 0x89 || (bytes.size() > 4 && bytes[4] == 'S')) {
+  const std::size_t magic = std::min(bytes.size(), sizeof kRecordingMagic);
+  if (bytes.empty() ||
+      !std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(magic), kRecordingMagic)) {
     const std::string_view first(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     throw Unusable(path + ": offset 0: " + seemsToBe(first));
   }

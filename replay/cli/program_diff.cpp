@@ -17,10 +17,10 @@ struct Options {
 
 unsigned long long shown(std::uint64_t number) { return number; }
 
-/// Reads a recording's first bytes; says on the error output what is wrong with them.
-bool readInfo(const std::string& file, std::span<const std::uint8_t> bytes, RecordingInfo& info) {
+/// Reads a recording; says on the error output what is wrong with its first bytes.
+bool read(const std::string& file, std::vector<std::uint8_t>& bytes) {
   try {
-    info = recordingInfo(bytes);
+    bytes = readRecording(file);
     return true;
   } catch (const FormatError& error) {
     tell(file, error);
@@ -95,23 +95,13 @@ int run(const Options& options, std::span<const std::uint8_t> a, std::span<const
 int diff(const Options& options) {
   std::vector<std::uint8_t> a;
   std::vector<std::uint8_t> b;
-  for (const bool first : {true, false}) {
-    const std::string& file = first ? options.a : options.b;
-    try {
-      (first ? a : b) = readRecording(file);
-    } catch (const FormatError& error) {
-      tell(file, error);
-      return kUnusable;
-    }
-  }
-  RecordingInfo infoA;
-  RecordingInfo infoB;
-  if (!readInfo(options.a, a, infoA) || !readInfo(options.b, b, infoB)) return kUnusable;
-  if (infoA.scalar != infoB.scalar) {
+  if (!read(options.a, a) || !read(options.b, b)) return kUnusable;
+  const ScalarKind scalar = recordingInfo(a).scalar;
+  if (scalar != recordingInfo(b).scalar) {
     std::printf("one is recorded with fixed, the other with double\n");
     return kMismatch;
   }
-  return withScalarOf(infoA.scalar, [&](auto scalar) { return run<decltype(scalar)>(options, a, b); });
+  return withScalarOf(scalar, [&](auto number) { return run<decltype(number)>(options, a, b); });
 }
 
 }  // namespace

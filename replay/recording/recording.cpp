@@ -18,16 +18,15 @@ RecordingInfo readInfo(ByteReader& bytes) {
   const auto magic = bytes.take(sizeof kRecordingMagic);
   if (!std::equal(magic.begin(), magic.end(), kRecordingMagic)) failFormat(0, "not a recording");
   RecordingInfo info;
-  std::uint64_t at = bytes.offset();
   read.get(info.version);
-  if (info.version != kRecordingVersion) failFormat(at, "a recording of another format version");
+  if (info.version != kRecordingVersion) failFormat(kVersionAt, "a recording of another format version");
   read.get(info.revision);
-  at = bytes.offset();
   read.get(info.scalar);
-  if (info.scalar != ScalarKind::fixed && info.scalar != ScalarKind::float64)
-    failFormat(at, "unknown scalar");
+  if (info.scalar != ScalarKind::fixed && info.scalar != ScalarKind::float64) {
+    failFormat(kScalarAt, "unknown scalar");
+  }
   for (int i = 0; i < 3; ++i) {
-    at = bytes.offset();
+    const std::uint64_t at = bytes.offset();
     if (read.next<std::uint8_t>() != 0) failFormat(at, "a byte that must be zero is not");
   }
   return info;
@@ -122,13 +121,14 @@ RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const W
     : bytes_(bytes) {
   ByteReader reader(bytes);
   const RecordingInfo info = readInfo(reader);
-  if (info.scalar != ScalarTraits<S>::kKind) failFormat(16, "a recording of another scalar");
+  if (info.scalar != ScalarTraits<S>::kKind) failFormat(kScalarAt, "a recording of another scalar");
   if (info.revision != kSimulationRevision) {
-    failRevision(12, info.revision, kSimulationRevision);
+    failRevision(kRevisionAt, info.revision, kSimulationRevision);
   }
   CanonicalReader read(reader);
   read.get(timeStep_);
-  if (!(timeStep_ > S(0) && timeStep_ <= kMaxTimeStep<S>)) failFormat(20, "the time step is out of range");
+  if (!(timeStep_ > S(0) && timeStep_ <= kMaxTimeStep<S>))
+    failFormat(kTimeStepAt, "the time step is out of range");
   offset_ = reader.offset();
   world_ = decodeWorld<S>(bytes, offset_, limits);
   ByteReader after(bytes, offset_);

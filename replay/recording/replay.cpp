@@ -35,7 +35,7 @@ Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, 
 template <Scalar S>
 bool Replay<S>::applyCommands() {
   if (applied_ || ended_) return !ended_;
-  commandsBegin_ = reader_.nextOffset();
+  commandsBegin_ = commandsEnd_ = reader_.nextOffset();
   RecordingItem item = reader_.next();
   for (; item == RecordingItem::command; item = reader_.next()) {
     if (asksForMore(reader_.command(), limits_)) {

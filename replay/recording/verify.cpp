@@ -4,6 +4,7 @@
 #include <samestep/named_handlers.h>
 
 #include "base/require_ieee.h"
+#include "recording/recording_format.h"
 
 namespace samestep {
 
@@ -57,7 +58,8 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring
   replay.space().setWorkers(options.workers, Sharing::always);
   VerifyResult result;
   result.ticks = replay.ticks();
-  if (replay.space().stamp() > options.mostFirstTick) failFormat(28, "begins after more steps than allowed");
+  if (replay.space().stamp() > options.mostFirstTick)
+    failFormat(kWorldAt, "begins after more steps than allowed");
   result.unexpected = unexpectedIn(replay, options.expected);
   if (result.unexpected != nullptr) return result;
   CommandWatch<S> watch{options.expected.commands, result};
@@ -83,7 +85,7 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const VerifyOptions& op
     return verify<Fixed>(bytes, namedHandlerWiring<Fixed>(), options);
   }
 #ifdef SAMESTEP_FIXED_ONLY
-  failFormat(16, "recorded with double, which this build lacks");
+  failFormat(kScalarAt, "recorded with double, which this build lacks");
 #else
   return verify<double>(bytes, namedHandlerWiring<double>(), options);
 #endif
