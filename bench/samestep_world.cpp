@@ -46,6 +46,10 @@ class SamestepWorld : public World {
       made.setFriction(sqrt(ratio<S>(6, 10)));
       if (first && shape.isDynamic()) made.setDensity(S(1));
       space_.add(made);
+      // The velocity is that of the centre of mass, which the shape has moved.
+      if (first && shape.type != "static") {
+        space_.body(bodies_.back()).setVelocity({exactly<S>(shape.vx), exactly<S>(shape.vy)});
+      }
     }
   }
   void step() override { space_.step(ratio<S>(1, 60)); }
