@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/allocation_count.h"
 #include "support/recordings.h"
 #include "support/scalars.h"
 
@@ -152,6 +153,36 @@ TYPED_TEST(RecorderRollbackTest, ARecordingWithoutAStepIsRefused) {
   Recorder<TypeParam>(space, kTick<TypeParam>, bytes).finish();
 
   EXPECT_THROW(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()), FormatError);
+}
+
+TYPED_TEST(RecorderRollbackTest, AWarmMatchUnderRollbackTakesNoMemory) {
+  Space<TypeParam> space;
+  const BodyId player = fillSmall(space);
+  std::uint64_t given = 0;
+  const auto count = [](std::span<const std::uint8_t> bytes, void* data) {
+    *static_cast<std::uint64_t*>(data) += bytes.size();
+  };
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, count, &given);
+  SavedSpace<TypeParam> saved;
+  const auto play = [&](int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      space.save(saved);
+      for (int guess = 0; guess < 8; ++guess) {
+        recorder.apply(push<TypeParam>(player, guess % 2 == 0 ? -1 : 1));
+        recorder.step();
+      }
+      space.restore(saved);
+      recorder.apply(push<TypeParam>(player, tick % 2 == 0 ? 1 : -1));
+      recorder.step();
+    }
+  };
+  // The busiest stretch of this world, whose trees still grow by then, and of what waits for the sink.
+  play(3000);
+  const std::uint64_t before = allocationCount, givenBefore = given;
+  play(600);
+
+  EXPECT_EQ(allocationCount, before);
+  EXPECT_GT(given, givenBefore);
 }
 
 }  // namespace
