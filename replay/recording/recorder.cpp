@@ -42,11 +42,16 @@ struct CommandWriter {
       if (spawn.id.valid()) write.put(shape.id());
     }
   }
-  void operator()(const UserInput& input) const {
-    write.put(static_cast<std::uint32_t>(input.bytes.size()));
-    for (const std::uint8_t byte : input.bytes) write.put(byte);
+  void operator()(const UserInput& input) const { (*this)(std::span<const std::uint8_t>(input.bytes)); }
+  void operator()(std::span<const std::uint8_t> input) const {
+    write.put(static_cast<std::uint32_t>(input.size()));
+    for (const std::uint8_t byte : input) write.put(byte);
   }
 };
+
+void requireRecordableInput(std::size_t bytes) {
+  require<Fault::ValueOutOfRange>(bytes <= kMaxInputBytes, "A recorded input has at most 2^16 bytes.");
+}
 
 template <Scalar S>
 void requireRecordable(const Command<S>& command) {
@@ -54,8 +59,7 @@ void requireRecordable(const Command<S>& command) {
     require<Fault::ValueOutOfRange>(spawn->shapes.size() <= kMaxSpawnShapes,
                                     "A recorded spawn has at most 256 shapes.");
   } else if (const auto* input = std::get_if<UserInput>(&command)) {
-    require<Fault::ValueOutOfRange>(input->bytes.size() <= kMaxInputBytes,
-                                    "A recorded input has at most 2^16 bytes.");
+    requireRecordableInput(input->bytes.size());
   }
 }
 
@@ -146,6 +150,35 @@ struct Recorder<S>::Impl {
     require<Fault::ForeignWorld>(!checking || space.hash() == lastHash,
                                  "The world was changed by something that was not recorded.");
   }
+  /// Applies by `apply` what is then written with `written`.
+  template <class Apply, class Written>
+  BodyId record(CommandKind kind, const Written& written, Apply&& apply) {
+    followRestore(0);
+    check();
+    const BodyId id = apply();
+    if (checking) lastHash = space.hash();
+    write.put(RecordingItem::command);
+    write.put(kind);
+    CommandWriter<S> writer{write, pieceSink};
+    if constexpr (requires { std::visit(writer, written); }) {
+      std::visit(writer, written);
+    } else {
+      writer(written);
+    }
+    return id;
+  }
+  void confirm(std::uint64_t upTo) {
+    oldest = max(oldest, upTo);
+    flushWhenFull();
+  }
+  void end() {
+    finished = true;
+    write.put(RecordingItem::end);
+    write.put(ticks);
+    give(piece.size());
+    write.put(static_cast<std::uint64_t>(XXH3_64bits_digest(&checksum)));
+    sink(piece, data);
+  }
   std::uint64_t recordStep() {
     stamp = space.stamp();
     ++ticks;
@@ -200,14 +233,18 @@ Recorder<S>::~Recorder() {
 template <Scalar S>
 BodyId Recorder<S>::apply(const Command<S>& command) {
   requireRecordable(command);
-  impl_->followRestore(0);
-  impl_->check();
-  const BodyId id = samestep::apply(impl_->space, command, impl_->wiring);
-  if (impl_->checking) impl_->lastHash = impl_->space.hash();
-  impl_->write.put(RecordingItem::command);
-  impl_->write.put(kindOf(command));
-  std::visit(CommandWriter<S>{impl_->write, impl_->pieceSink}, command);
-  return id;
+  return impl_->record(kindOf(command), command,
+                       [&] { return samestep::apply(impl_->space, command, impl_->wiring); });
+}
+
+template <Scalar S>
+void Recorder<S>::input(std::span<const std::uint8_t> bytes) {
+  requireRecordableInput(bytes.size());
+  impl_->record(CommandKind::userInput, bytes, [&] {
+    require<Fault::MissingCallback>(impl_->wiring.applyInput != nullptr);
+    impl_->wiring.applyInput(impl_->space, bytes, impl_->wiring.data);
+    return BodyId{};
+  });
 }
 
 template <Scalar S>
@@ -229,6 +266,12 @@ std::uint64_t Recorder<S>::stepped() {
 }
 
 template <Scalar S>
+void Recorder<S>::confirm(std::uint64_t ticks) {
+  require<Fault::ValueOutOfRange>(ticks <= impl_->ticks, "Only steps that are recorded can be confirmed.");
+  impl_->confirm(ticks);
+}
+
+template <Scalar S>
 void Recorder<S>::setRewindTicks(std::uint32_t ticks) {
   require<Fault::ValueOutOfRange>(ticks <= kMostRewindTicks, "At most 2^15 steps can be taken back.");
   impl_->setRewindTicks(ticks);
@@ -244,13 +287,16 @@ template <Scalar S>
 void Recorder<S>::finish() {
   if (impl_->finished) return;
   impl_->followRestore(0);
-  impl_->finished = true;
-  impl_->cutAfter(impl_->ticks);
-  impl_->write.put(RecordingItem::end);
-  impl_->write.put(impl_->ticks);
-  impl_->give(impl_->piece.size());
-  impl_->write.put(static_cast<std::uint64_t>(XXH3_64bits_digest(&impl_->checksum)));
-  impl_->sink(impl_->piece, impl_->data);
+  finish(impl_->ticks);
+}
+
+template <Scalar S>
+void Recorder<S>::finish(std::uint64_t ticks) {
+  if (impl_->finished) return;
+  require<Fault::ValueOutOfRange>(ticks >= impl_->oldest && ticks <= impl_->ticks,
+                                  "The recorder cannot end after that step.");
+  impl_->cutAfter(ticks);
+  impl_->end();
 }
 
 template <Scalar S>

@@ -54,6 +54,101 @@ TYPED_TEST(RecorderRollbackTest, WhatWasTakenBackIsNotInTheRecording) {
   EXPECT_TRUE(verify<TypeParam>(plain, namedHandlerWiring<TypeParam>()).matches);
 }
 
+/// What the players do before a step: the same each time, or a wrong guess.
+template <Scalar S>
+void play(Recorder<S>& recorder, BodyId player, std::uint64_t tick, bool guess) {
+  if (tick % 3 == 0 || guess) recorder.apply(push<S>(player, guess ? -2 : 1));
+  const std::uint8_t input[] = {static_cast<std::uint8_t>(guess ? 255 : tick)};
+  if (tick % 4 == 1) recorder.input(input);
+  recorder.step();
+}
+
+/// A match of so many steps with the worlds before the last few of them in a ring, as a session keeps them.
+template <Scalar S>
+struct RingMatch {
+  static constexpr std::uint64_t kSaves = 8;
+  Space<S> space;
+  BodyId player = fillSmall(space);
+  Bytes bytes;
+  Recorder<S> recorder{space, kTick<S>, bytes, testWiring<S>()};
+  SavedSpace<S> saves[kSaves];
+
+  /// @return its bytes
+  Bytes straight(std::uint64_t ticks) {
+    for (std::uint64_t tick = 0; tick < ticks; ++tick) play(recorder, player, tick, false);
+    recorder.finish();
+    return bytes;
+  }
+  void advance(std::uint64_t tick, bool guess) {
+    space.save(saves[tick % kSaves]);
+    play(recorder, player, tick, guess);
+  }
+  /// Goes back to `tick` and on to where it was, without guesses.
+  void correct(std::uint64_t tick) {
+    const std::uint64_t end = recorder.ticks();
+    space.restore(saves[tick % kSaves]);
+    while (tick < end) advance(tick++, false);
+  }
+};
+
+TYPED_TEST(RecorderRollbackTest, GoingBackAtEveryTickByEveryDepthGivesTheSameBytes) {
+  constexpr std::uint64_t kTicks = 40;
+  const Bytes plain = RingMatch<TypeParam>().straight(kTicks);
+  for (std::uint64_t depth = 1; depth <= RingMatch<TypeParam>::kSaves; ++depth) {
+    RingMatch<TypeParam> match;
+    for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
+      match.advance(tick, true);
+      match.correct(tick + 1 < depth ? 0 : tick + 1 - depth);
+    }
+    match.recorder.finish();
+    EXPECT_EQ(match.bytes, plain) << depth;
+  }
+}
+
+TYPED_TEST(RecorderRollbackTest, OneLateInputAtAnyTickGivesTheSameBytes) {
+  constexpr std::uint64_t kTicks = 40;
+  const Bytes plain = RingMatch<TypeParam>().straight(kTicks);
+  for (std::uint64_t late = 0; late < kTicks; ++late) {
+    RingMatch<TypeParam> match;
+    for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
+      match.advance(tick, tick == late);
+      if (tick == late + 3 || tick + 1 == kTicks) match.correct(tick < late + 3 ? late : tick - 3);
+    }
+    match.recorder.finish();
+    EXPECT_EQ(match.bytes, plain) << late;
+  }
+}
+
+TYPED_TEST(RecorderRollbackTest, WhatIsConfirmedIsFinalAndWhatIsNotCanBeLeftOut) {
+  const Bytes plain = RingMatch<TypeParam>().straight(20);
+  RingMatch<TypeParam> match;
+  for (std::uint64_t tick = 0; tick < 20; ++tick) match.advance(tick, false);
+  for (std::uint64_t tick = 20; tick < 24; ++tick) match.advance(tick, true);
+  EXPECT_THROW(match.recorder.confirm(25), ValueOutOfRange);
+  match.recorder.confirm(20);
+  match.recorder.confirm(3);
+  match.space.restore(match.saves[19 % match.kSaves]);
+  EXPECT_THROW(match.recorder.step(), ForeignWorld);
+  EXPECT_THROW(match.recorder.finish(19), ValueOutOfRange);
+  EXPECT_THROW(match.recorder.finish(25), ValueOutOfRange);
+  match.recorder.finish(20);
+
+  EXPECT_EQ(match.bytes, plain);
+}
+
+TYPED_TEST(RecorderRollbackTest, AConfirmedMatchReachesTheSinkWithoutDelay) {
+  Space<TypeParam> space;
+  fillSmall(space);
+  Bytes bytes;
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, bytes);
+  recorder.setRewindTicks(kMostRewindTicks);
+  for (int i = 0; i < 3000; ++i) recorder.step();
+  EXPECT_TRUE(bytes.empty());
+  recorder.confirm(3000);
+
+  EXPECT_GT(bytes.size(), 3000u * 9);
+}
+
 TYPED_TEST(RecorderRollbackTest, ACommandWithoutAStepIsTakenBack) {
   Space<TypeParam> space;
   const BodyId player = fillSmall(space);
@@ -155,25 +250,30 @@ TYPED_TEST(RecorderRollbackTest, ARecordingWithoutAStepIsRefused) {
   EXPECT_THROW(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()), FormatError);
 }
 
-TYPED_TEST(RecorderRollbackTest, AWarmMatchUnderRollbackTakesNoMemory) {
+TYPED_TEST(RecorderRollbackTest, AWarmMatchWithARingOfSavesTakesNoMemory) {
   Space<TypeParam> space;
   const BodyId player = fillSmall(space);
   std::uint64_t given = 0;
   const auto count = [](std::span<const std::uint8_t> bytes, void* data) {
     *static_cast<std::uint64_t*>(data) += bytes.size();
   };
-  Recorder<TypeParam> recorder(space, kTick<TypeParam>, count, &given);
-  SavedSpace<TypeParam> saved;
-  const auto play = [&](int ticks) {
-    for (int tick = 0; tick < ticks; ++tick) {
-      space.save(saved);
-      for (int guess = 0; guess < 8; ++guess) {
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, count, &given, testWiring<TypeParam>());
+  SavedSpace<TypeParam> saves[8];
+  const auto play = [&](std::uint64_t ticks) {
+    const std::uint64_t end = recorder.ticks() + ticks;
+    while (recorder.ticks() < end) {
+      const std::uint64_t tick = recorder.ticks();
+      for (std::uint64_t guess = 0; guess < 8; ++guess) {
+        space.save(saves[(tick + guess) % 8]);
         recorder.apply(push<TypeParam>(player, guess % 2 == 0 ? -1 : 1));
+        const std::uint8_t input[] = {static_cast<std::uint8_t>(guess)};
+        recorder.input(input);
         recorder.step();
       }
-      space.restore(saved);
+      space.restore(saves[tick % 8]);
       recorder.apply(push<TypeParam>(player, tick % 2 == 0 ? 1 : -1));
       recorder.step();
+      recorder.confirm(recorder.ticks());
     }
   };
   // The busiest stretch of this world, whose trees still grow by then, and of what waits for the sink.

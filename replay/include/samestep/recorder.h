@@ -54,6 +54,8 @@ class Recorder {
   ///         256 shapes and an input of more than 2^16 bytes; ForeignWorld where checking finds an unrecorded
   ///         change
   BodyId apply(const Command<S>& command);
+  /// apply() of a UserInput whose bytes stay with the caller.
+  void input(std::span<const std::uint8_t> bytes);
   /// Makes a step and records it.
   /// @return the hash of the world
   /// @throws as Space::step; ForeignWorld where checking finds an unrecorded change
@@ -61,6 +63,10 @@ class Recorder {
   /// For a game that calls Space::step by itself: records the step it has just made.
   /// @throws ForeignWorld unless exactly one step of the recording's length has been made since the last call
   std::uint64_t stepped();
+  /// Says that the first `ticks` steps are final, as once the inputs of all players are there: their bytes
+  /// need wait no longer, and no world before them can be restored any more.
+  /// @throws ValueOutOfRange for more steps than are recorded
+  void confirm(std::uint64_t ticks);
   /// How many of the last steps can be taken back; at first kDefaultRewindTicks. Bytes of older ones are
   /// given to the sink. Fewer than before forgets; more holds from now on.
   /// @throws ValueOutOfRange for more than kMostRewindTicks
@@ -72,6 +78,10 @@ class Recorder {
   /// A recording without a step is refused by readers.
   /// @throws ForeignWorld where a world was brought in that is none of the recording's
   void finish();
+  /// The same after the step with this number: what was guessed beyond it is left out, whatever world the
+  /// Space has.
+  /// @throws ValueOutOfRange for a step that is not recorded or can no longer be gone back to
+  void finish(std::uint64_t ticks);
 
   /// Steps recorded.
   std::uint64_t ticks() const;
