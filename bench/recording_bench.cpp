@@ -28,7 +28,7 @@ struct Times {
 
 template <Scalar S>
 void applyDue(Scene<S>& scene) {
-  while (const Command<S>* command = scene.nextCommand()) apply(scene.space(), *command);
+  while (const Command<S>* command = scene.nextCommand()) applyCommand(scene.space(), *command);
 }
 
 /// Seconds that `run` takes, without what it takes to set up the scene.

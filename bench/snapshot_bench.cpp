@@ -41,7 +41,7 @@ void measure(const char* scalar, const SceneSource& source, int ticks, int round
   Scene<S> scene(source);
   Space<S>& space = scene.space();
   for (int i = 0; i < ticks; ++i) {
-    while (const Command<S>* command = scene.nextCommand()) apply(space, *command);
+    while (const Command<S>* command = scene.nextCommand()) applyCommand(space, *command);
     space.step(scene.timeStep());
   }
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(saveSnapshot(space, {})));

@@ -53,7 +53,7 @@ class BoxTree {
   static constexpr Ref kNone = 0x7fffffffu;
   /// Keys are below this: they index arrays.
   static constexpr Key kMaxKeys = 1u << 24;
-  /// A higher tree is rebuilt.
+  /// What would be higher is put in elsewhere, or the tree is rebuilt.
   static constexpr std::uint32_t kMaxHeight = 60;
 
   explicit BoxTree(std::uint32_t maxLeaves = kMaxKeys);
@@ -78,6 +78,8 @@ class BoxTree {
 
   /// A balanced tree from the same leaves: for tests, and after many changes. O(n log n)
   void rebuild();
+  /// How often the tree was built anew, by itself or by a call.
+  std::uint64_t rebuilds() const { return rebuilds_; }
 
   /// Calls visit(key) for every leaf whose box overlaps the area (GridBox or GridSegment), in any order.
   /// visit must not change the tree.
@@ -183,7 +185,10 @@ class BoxTree {
   void hang(Place place, Ref ref, const GridBox& box, std::uint32_t height);
   void insertBelow(Place start, Ref leaf, const GridBox& box);
   Place findSibling(const GridBox& box, Place start) const;
-  void rotate(Ref node, int side);
+  std::uint32_t depthOf(Place place) const;
+  Place findShallow() const;
+  Place choosePlace(const GridBox& box, Place start);
+  void rotate(Ref node, int side, bool tall);
   void refit(Ref node);
   GridBox boxOf(Ref ref) const;
   std::uint32_t heightOf(Ref ref) const;
@@ -195,6 +200,7 @@ class BoxTree {
   Ref freeNodes_ = kNone;      ///< Linked by child[0].
   std::uint32_t count_ = 0;
   std::uint32_t maxLeaves_;
+  std::uint64_t rebuilds_ = 0;
 };
 
 }  // namespace samestep

@@ -133,11 +133,11 @@ const char* commandName(CommandKind kind) {
 }
 
 template <Scalar S>
-BodyId apply(Space<S>& space, const Command<S>& command, const Wiring<S>& wiring) {
+BodyId applyCommand(Space<S>& space, const Command<S>& command, const Wiring<S>& wiring) {
   return std::visit(Applier<S>{space, wiring}, command);
 }
 
-#define SAMESTEP_EACH_SCALAR template BodyId apply<S>(Space<S>&, const Command<S>&, const Wiring<S>&);
+#define SAMESTEP_EACH_SCALAR template BodyId applyCommand<S>(Space<S>&, const Command<S>&, const Wiring<S>&);
 #include <samestep/each_scalar.h>
 
 }  // namespace samestep

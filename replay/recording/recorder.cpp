@@ -234,7 +234,7 @@ template <Scalar S>
 BodyId Recorder<S>::apply(const Command<S>& command) {
   requireRecordable(command);
   return impl_->record(kindOf(command), command,
-                       [&] { return samestep::apply(impl_->space, command, impl_->wiring); });
+                       [&] { return applyCommand(impl_->space, command, impl_->wiring); });
 }
 
 template <Scalar S>

@@ -46,7 +46,7 @@ bool Replay<S>::applyCommands() {
       return false;
     }
     // Recorded commands were accepted once.
-    orFailFormat(reader_.offset(), [&] { apply(space_, reader_.command(), wiring_); });
+    orFailFormat(reader_.offset(), [&] { applyCommand(space_, reader_.command(), wiring_); });
     if (space_.state().bodies.slots() > limits_.bodies || space_.state().shapes.slots() > limits_.shapes) {
       failFormat(reader_.offset(), "more bodies or shapes than allowed");
     }

@@ -45,7 +45,7 @@ const Command<S>* Scene<S>::nextCommand() {
 
 template <Scalar S>
 void Scene<S>::step() {
-  while (const Command<S>* command = nextCommand()) apply(space_, *command);
+  while (const Command<S>* command = nextCommand()) applyCommand(space_, *command);
   space_.step(timeStep_);
 }
 

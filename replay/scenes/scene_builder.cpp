@@ -277,7 +277,7 @@ Shape<S> SceneBuilder<S>::readShape(const Cursor& at) {
 
 template <Scalar S>
 BodyId SceneBuilder<S>::addBody(const Spawn<S>& body) {
-  return apply<S>(scene_.space_, body);
+  return applyCommand<S>(scene_.space_, body);
 }
 
 template <Scalar S>

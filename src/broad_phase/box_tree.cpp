@@ -157,8 +157,42 @@ void BoxTree::insert(Key key, const GridBox& box) {
   }
 }
 
+std::uint32_t BoxTree::depthOf(Place place) const {
+  std::uint32_t depth = 0;
+  for (; place >> 1 != kAnchor; place = nodes_[place >> 1].parent) ++depth;
+  return depth;
+}
+
+// Always into the lower subtree: what is above the leaf grows only where both sides are equally high, all the
+// way down.
+BoxTree::Place BoxTree::findShallow() const {
+  Place place = 0;
+  for (Ref ref = root(); (ref & kLeaf) == 0; ref = nodes_[place >> 1].child[place & 1]) {
+    const Node& node = nodes_[ref];
+    place = ref << 1 | (node.height[1] < node.height[0] ? 1u : 0u);
+  }
+  return place;
+}
+
+// Boxes one in the other would each go above all others and make a list of the tree. One that is as high as
+// it may be takes leaves where it is low, whatever their perimeter, so that it is rebuilt for the first of n
+// such boxes and not for every fortieth.
+BoxTree::Place BoxTree::choosePlace(const GridBox& box, Place start) {
+  const Place best = findSibling(box, start);
+  if (height() < kMaxHeight) return best;
+  const auto grows = [this](Place place) {
+    return depthOf(place) + 1 + nodes_[place >> 1].height[place & 1] > kMaxHeight;
+  };
+  if (!grows(best)) return best;
+  const Place shallow = findShallow();
+  if (!grows(shallow)) return shallow;
+  rebuild();
+  return findSibling(box, 0);
+}
+
 void BoxTree::insertBelow(Place start, Ref leaf, const GridBox& box) {
-  const Place place = findSibling(box, start);
+  const Place place = choosePlace(box, start);
+  const bool tall = height() >= kMaxHeight;
   const Ref node = newNode();
   const Node& parent = nodes_[place >> 1];
   const Ref sibling = parent.child[place & 1];
@@ -171,7 +205,7 @@ void BoxTree::insertBelow(Place start, Ref leaf, const GridBox& box) {
   Place changed = place;
   while (changed >> 1 != kAnchor) {
     const Ref above = changed >> 1;
-    rotate(above, static_cast<int>(changed & 1));
+    rotate(above, static_cast<int>(changed & 1), tall);
     const Node& n = nodes_[above];
     const GridBox merged = merge(n.box[0], n.box[1]);
     const std::uint16_t height = static_cast<std::uint16_t>(1 + std::max(n.height[0], n.height[1]));
@@ -181,17 +215,17 @@ void BoxTree::insertBelow(Place start, Ref leaf, const GridBox& box) {
     up.box[changed & 1] = merged;
     up.height[changed & 1] = height;
   }
-  if (height() > kMaxHeight) rebuild();
 }
 
 // The child on the other side changes places with one of this side's children if that makes this side
-// smaller.
-void BoxTree::rotate(Ref node, int side) {
+// smaller. In a tree as high as it may be, only if it gets no higher.
+void BoxTree::rotate(Ref node, int side, bool tall) {
   Node& upper = nodes_[node];
   const Ref inner = upper.child[side];
   if ((inner & kLeaf) != 0) return;
   Node& lower = nodes_[inner];
   const int other = 1 - side;
+  if (tall && upper.height[other] >= upper.height[side]) return;
   const GridBox kept0 = merge(upper.box[other], lower.box[1]);
   const GridBox kept1 = merge(upper.box[other], lower.box[0]);
   const std::int64_t now = cost(upper.box[side]);
@@ -267,10 +301,12 @@ void BoxTree::move(Key key, const GridBox& box) {
   while (start != 0 && !holds(nodes_[start >> 1].box[start & 1], box)) start = nodes_[start >> 1].parent;
   replaceChild(nodes_[node].parent >> 1, node, nodes_[node].child[1 - (place & 1)]);
   freeNode(node);
+  places_[key] = kNone;
   insertBelow(start, kLeaf | key, box);
 }
 
 void BoxTree::rebuild() {
+  ++rebuilds_;
   std::vector<Leaf> leaves;
   leaves.reserve(count_);
   for (Key key = 0; key < places_.size(); ++key) {

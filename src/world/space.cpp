@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <tuple>
 
 #include "base/require_ieee.h"
@@ -34,9 +35,13 @@ void requireIn(S value, S low, S high) {
 }  // namespace
 
 template <Scalar S>
-Space<S>::Space() : parts_(new SpaceParts<S>) {
+Space<S>::Space() : parts_(nullptr) {
+  // No destructor runs where what follows fails.
+  auto made = std::make_unique<SpaceParts<S>>();
+  parts_ = made.get();
   parts_->wiring.serial = nextSerial();
   state_.staticBody = add(Body<S>::fixedInPlace());
+  made.release();
 }
 
 template <Scalar S>

@@ -108,6 +108,47 @@ TEST(BoxTreeTest, StaysLowForBoxesInARowAndForEqualBoxes) {
   EXPECT_TRUE(row.valid() && heap.valid() && nested.valid());
 }
 
+// Each of them goes above all others: by perimeter alone the tree would be a list.
+TEST(BoxTreeTest, BoxesOneInTheOtherAreSortedInWithoutRebuildingTheTreeForEachFew) {
+  for (const bool outwards : {true, false}) {
+    BoxTree tree;
+    constexpr int kCount = 20000;
+    for (int i = 0; i < kCount; ++i) {
+      const int half = outwards ? i : kCount - i;
+      tree.insert(static_cast<BoxTree::Key>(i), square(-half, -half, 2 * half));
+    }
+
+    EXPECT_LE(tree.rebuilds(), 2u);
+    EXPECT_LE(tree.height(), BoxTree::kMaxHeight);
+    EXPECT_TRUE(tree.valid());
+  }
+}
+
+// Moves take leaves from where they keep the tree low.
+TEST(BoxTreeTest, ATreeAsHighAsItMayBeStaysSoundWhenLeavesMove) {
+  BoxTree tree;
+  Random random(5);
+  constexpr int kCount = 600;
+  int half[kCount];
+  for (int i = 0; i < kCount; ++i) {
+    half[i] = 2 * i;
+    tree.insert(static_cast<BoxTree::Key>(i), square(-half[i], -half[i], 2 * half[i]));
+  }
+  for (int step = 0; step < 20000; ++step) {
+    const int i = random.between(0, kCount - 1);
+    half[i] = random.oneIn(2) ? 2 * kCount + step : random.between(0, 2 * kCount);
+    tree.move(static_cast<BoxTree::Key>(i), square(-half[i], -half[i], 2 * half[i]));
+    if (step % 500 == 0) {
+      ASSERT_TRUE(tree.valid());
+      ASSERT_EQ(tree.count(), static_cast<std::uint32_t>(kCount));
+    }
+  }
+
+  EXPECT_LE(tree.height(), BoxTree::kMaxHeight);
+  EXPECT_LE(tree.rebuilds(), 20u);
+  EXPECT_EQ(found(tree, square(0, 0, 0)).size(), static_cast<std::size_t>(kCount));
+}
+
 TEST(BoxTreeTest, RebuildGivesTheLeastHeightAndTheSameAnswers) {
   Random random(3);
   BoxTree tree;

@@ -112,7 +112,7 @@ void playOn(const std::string& path, const std::vector<std::uint8_t>& recording,
   for (RecordingItem item = reader.next(); item != RecordingItem::end && tick < options.ticks;
        item = reader.next()) {
     if (item == RecordingItem::step) ++tick;
-    if (item == RecordingItem::command && tick >= start) apply(space, reader.command(), wiring);
+    if (item == RecordingItem::command && tick >= start) applyCommand(space, reader.command(), wiring);
     if (item != RecordingItem::step || tick <= start) continue;
     space.step(reader.timeStep());
     printHash(nameOf(path), tick, space.hash());

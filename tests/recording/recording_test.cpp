@@ -191,17 +191,17 @@ TYPED_TEST(RecordingTest, ASpawnIsAllOrNothing) {
   heavy.shapes[0].setMass(TypeParam(900000));
   heavy.shapes.push_back(heavy.shapes[0]);
 
-  expectRefused<IllegalBody>(space, [&] { apply<TypeParam>(space, heavy); });
+  expectRefused<IllegalBody>(space, [&] { applyCommand<TypeParam>(space, heavy); });
 }
 
 TYPED_TEST(RecordingTest, ASpawnUnderGivenIdsIsAllOrNothing) {
   using S = TypeParam;
   Space<S> space;
   fillSmall(space);
-  EXPECT_EQ(apply<S>(space, underGivenIds(discToSpawn<S>(), {12, 3}, {9, 1})), (BodyId{12, 3}));
+  EXPECT_EQ(applyCommand<S>(space, underGivenIds(discToSpawn<S>(), {12, 3}, {9, 1})), (BodyId{12, 3}));
   EXPECT_EQ(space.shape({9, 1}).body(), (BodyId{12, 3}));
   const auto refuses = [&](Spawn<S> spawn) {
-    expectRefused<IllegalId>(space, [&] { apply<S>(space, spawn); });
+    expectRefused<IllegalId>(space, [&] { applyCommand<S>(space, spawn); });
   };
 
   refuses(underGivenIds(discToSpawn<S>(), {12, 5}, {10, 1}));
@@ -262,8 +262,8 @@ TYPED_TEST(CommandTest, ArmThatLeadsOutOfTheWorldIsRefused) {
   const Vector<TypeParam> up{TypeParam(0), TypeParam(1)};
   for (const TypeParam length : {TypeParam(0x7fffffff), -TypeParam(0x7fffffff), TypeParam(1 << 20)}) {
     const Vector<TypeParam> arm{length, TypeParam(0)};
-    EXPECT_THROW(apply<TypeParam>(space, ApplyImpulse<TypeParam>{player, up, arm}), IllegalBody);
-    EXPECT_THROW(apply<TypeParam>(space, ApplyForce<TypeParam>{player, up, arm}), IllegalBody);
+    EXPECT_THROW(applyCommand<TypeParam>(space, ApplyImpulse<TypeParam>{player, up, arm}), IllegalBody);
+    EXPECT_THROW(applyCommand<TypeParam>(space, ApplyForce<TypeParam>{player, up, arm}), IllegalBody);
   }
   EXPECT_EQ(space.body(player).velocity(), before.velocity());
   EXPECT_EQ(space.body(player).force(), before.force());

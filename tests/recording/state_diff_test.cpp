@@ -46,7 +46,7 @@ TYPED_TEST(StateDiffTest, TellsWhatOnlyOneWorldHas) {
   Space<TypeParam> b;
   fillSmall(a);
   fillSmall(b);
-  const BodyId extra = apply<TypeParam>(a, discToSpawn<TypeParam>());
+  const BodyId extra = applyCommand<TypeParam>(a, discToSpawn<TypeParam>());
 
   const std::vector<FieldDifference> found = differences(a.state(), b.state());
 

@@ -3,7 +3,10 @@
 #include <samestep/space.h>
 #include <samestep/workers.h>
 
+#include <malloc.h>
+
 #include <atomic>
+#include <concepts>
 #include <cstdlib>
 #include <new>
 
@@ -14,24 +17,60 @@
 
 namespace {
 std::atomic<long> allocations = 0;
+std::atomic<std::size_t> live = 0;
+std::atomic<std::size_t> mostLive = 0;
 
-void* counted(std::size_t size) {
+/// How many more calls take memory before one fails; none fails below 0.
+std::atomic<long> untilFailure = -1;
+
+void* counted(void* memory) {
   ++allocations;
-  void* memory = std::malloc(size);
+  if (untilFailure >= 0 && untilFailure-- == 0) {
+    std::free(memory);
+    throw std::bad_alloc();
+  }
   if (memory == nullptr) throw std::bad_alloc();
+  const std::size_t now = live += malloc_usable_size(memory);
+  std::size_t most = mostLive;
+  while (now > most && !mostLive.compare_exchange_weak(most, now)) {
+  }
   return memory;
+}
+
+void release(void* memory) {
+  if (memory != nullptr) live -= malloc_usable_size(memory);
+  std::free(memory);
+}
+
+void* aligned(std::size_t size, std::align_val_t alignment) {
+  const auto to = static_cast<std::size_t>(alignment);
+  return counted(std::aligned_alloc(to, (size + to - 1) / to * to));
 }
 }  // namespace
 
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void* operator new(std::size_t size) { return counted(std::malloc(size)); }
+void* operator new[](std::size_t size) { return counted(std::malloc(size)); }
+void* operator new(std::size_t size, std::align_val_t alignment) { return aligned(size, alignment); }
+void* operator new[](std::size_t size, std::align_val_t alignment) { return aligned(size, alignment); }
+void operator delete(void* memory) noexcept { release(memory); }
+void operator delete[](void* memory) noexcept { release(memory); }
+void operator delete(void* memory, std::size_t) noexcept { release(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { release(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { release(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { release(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { release(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { release(memory); }
 
 namespace samestep {
 namespace {
+
+/// What a Space takes at the worst for each pair, with all that belongs to its shapes, bytes.
+template <Scalar S>
+double mostBytesPerPair(SolverKind solver, ContactPrecision precision) {
+  if (solver == SolverKind::sequentialImpulses) return 1300;
+  if (std::floating_point<S>) return 2800;
+  return precision == ContactPrecision::fast ? 3300 : 2400;
+}
 
 template <Scalar S>
 class AllocationTest : public ::testing::Test {
@@ -87,6 +126,50 @@ TYPED_TEST(AllocationTest, AWarmStepOfTheSoftStepTakesNoMemoryAloneOrWithWorkers
 
       EXPECT_EQ(this->countIn(play), 0) << workers << " workers";
     }
+  }
+}
+
+// docs/formats.md, "From strangers". Heavy boxes in one place: nearly all pairs share bodies, so that each is
+// alone in its block, and the first solver gives up.
+TYPED_TEST(AllocationTest, PairsInOnePlaceTakeNoMoreMemoryThanIsDocumented) {
+  using S = TypeParam;
+  for (const SolverKind solver : {SolverKind::sequentialImpulses, SolverKind::softStep}) {
+    for (const ContactPrecision precision : {ContactPrecision::accurate, ContactPrecision::fast}) {
+      const std::size_t before = live;
+      mostLive = before;
+      Space<S> space;
+      space.setSolver(solver);
+      space.setPrecision(precision);
+      for (int i = 0; i < 300; ++i) addBox(space, {}, S(1), S(1), S(i % 2 == 0 ? 1000000 : 1));
+      space.step(kTick<S>);
+      const auto pairs = space.state().pairs.size();
+      for (int i = 0; i < 3; ++i) space.step(kTick<S>);
+
+      ASSERT_EQ(pairs, 300u * 299u / 2u);
+      EXPECT_LE(static_cast<double>(mostLive - before) / static_cast<double>(pairs),
+                mostBytesPerPair<S>(solver, precision))
+          << static_cast<int>(solver) << ' ' << static_cast<int>(precision);
+    }
+  }
+}
+
+TYPED_TEST(AllocationTest, ASpaceThatCannotBeMadeGivesAllMemoryBack) {
+  using S = TypeParam;
+  const long needed = this->countIn([] { Space<S> space; });
+  ASSERT_GT(needed, 3);
+  for (long failing = 0; failing < needed; ++failing) {
+    const std::size_t before = live;
+    untilFailure = failing;
+    bool failed = false;
+    try {
+      Space<S> space;
+    } catch (const std::bad_alloc&) {
+      failed = true;
+    }
+    untilFailure = -1;
+
+    EXPECT_TRUE(failed);
+    EXPECT_EQ(live, before) << "allocation " << failing;
   }
 }
 

@@ -47,8 +47,8 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   /// Applies a command and records it; one that the Space refuses is not recorded.
-  /// @return as samestep::apply
-  /// @throws as samestep::apply; ForeignWorld where the Space was given a world that is none of the
+  /// @return as applyCommand
+  /// @throws as applyCommand; ForeignWorld where the Space was given a world that is none of the
   /// recording's,
   ///         or one from before the steps that can be taken back; ValueOutOfRange for a spawn with more than
   ///         256 shapes and an input of more than 2^16 bytes; ForeignWorld where checking finds an unrecorded

@@ -53,13 +53,12 @@ void eachGroup(const std::vector<BlockGroup>& groups, Crew& crew, Part&& part) {
 
 /// A kernel's pass over all blocks; true where a number left its range.
 template <class N>
-bool passOverGroups(ContactPass<N> kernel, std::vector<ContactBlock<N>>& blocks,
-                    std::vector<BlockRest<N>>& rests, const std::vector<BlockGroup>& groups,
-                    std::vector<SoftBody<N>>& bodies, const SoftConstants<N>& constants, Crew& crew) {
+bool passOverGroups(ContactPass<N> kernel, ContactBlock<N>* blocks, BlockRest<N>* rests,
+                    const std::vector<BlockGroup>& groups, std::vector<SoftBody<N>>& bodies,
+                    const SoftConstants<N>& constants, Crew& crew) {
   Finding left;
   eachGroup<N>(groups, crew, [&](std::uint32_t begin, std::uint32_t end) {
-    left.note(kernel(blocks.data() + begin, rests.data() + begin, end - begin, bodies.data(), constants) !=
-              0);
+    left.note(kernel(blocks + begin, rests + begin, end - begin, bodies.data(), constants) != 0);
   });
   return static_cast<bool>(left);
 }

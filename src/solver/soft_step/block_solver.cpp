@@ -89,7 +89,8 @@ typename N::Speed heldSpeed(typename N::Speed speed, int which) {
 }  // namespace
 
 template <Scalar S, class N>
-BlockSolver<S, N>::BlockSolver() : passes_(passesFor<S, N>(nextBestKernel(KernelTarget::best))) {}
+BlockSolver<S, N>::BlockSolver(BlockMemory& memory)
+    : passes_(passesFor<S, N>(nextBestKernel(KernelTarget::best))), memory_(&memory) {}
 
 template <Scalar S, class N>
 void BlockSolver<S, N>::setKernel(KernelTarget target) {
@@ -133,10 +134,10 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
     marks_[i] = {0, units_.bendBits(from.radiusBits)};
   }
   blockCount_ = groups.empty() ? 0 : groups.back().end;
-  if (blocks_.size() < blockCount_) {
-    blocks_.resize(blockCount_);
-    rests_.resize(blockCount_);
-  }
+  static_assert(sizeof(Block) % BlockMemory::kAlignment == 0);
+  memory_->reserve(blockCount_ * (sizeof(Block) + sizeof(Rest)));
+  blocks_ = memory_->template at<Block>(0);
+  rests_ = memory_->template at<Rest>(blockCount_ * sizeof(Block));
   return misfit == 0;
 }
 

@@ -12,6 +12,7 @@
 #include "solver/kernels/contact_block.h"
 #include "solver/kernels/soft_units.h"
 #include "solver/soft_step/block_groups.h"
+#include "solver/soft_step/block_memory.h"
 
 namespace samestep {
 
@@ -21,7 +22,8 @@ class BlockSolver {
  public:
   using Numbers = N;
 
-  BlockSolver();
+  /// @param memory  room for the blocks, whose content is this solver's from begin() to the end of the step
+  explicit BlockSolver(BlockMemory& memory);
 
   /// @param target  one that is available
   void setKernel(KernelTarget target);
@@ -84,9 +86,10 @@ class BlockSolver {
   std::vector<SoftMarks> marks_;
   /// Of integers: inverse moment times mass by the squared radius, in units of spins.
   std::vector<std::int32_t> moments_;
-  /// The first blockCount_ are in use; the rest keep their memory.
-  std::vector<Block> blocks_;
-  std::vector<Rest> rests_;
+  BlockMemory* memory_;
+  /// Both in the memory, blockCount_ of them.
+  Block* blocks_ = nullptr;
+  Rest* rests_ = nullptr;
   std::uint32_t blockCount_ = 0;
 };
 

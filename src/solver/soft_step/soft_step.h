@@ -22,6 +22,9 @@ Softness<S> makeSoftness(S hertz, S dampingRatio, S substep);
 template <Scalar S>
 class SoftSolvers {
  public:
+  SoftSolvers() = default;
+  SoftSolvers(const SoftSolvers&) = delete;
+  SoftSolvers& operator=(const SoftSolvers&) = delete;
   /// Starts a step. @param fast  whether 32 bits may do
   void begin(bool fast) { chosen_ = fast ? 0 : 1; }
   /// To the next one; the last takes everything.
@@ -41,9 +44,10 @@ class SoftSolvers {
   }
 
  private:
-  BlockSolver<S, FastNumbers> fast_;
-  BlockSolver<S, WideNumbers> wide_;
-  BlockSolver<S, PlainNumbers<S, true>> whole_;
+  BlockMemory memory_;
+  BlockSolver<S, FastNumbers> fast_{memory_};
+  BlockSolver<S, WideNumbers> wide_{memory_};
+  BlockSolver<S, PlainNumbers<S, true>> whole_{memory_};
   int chosen_ = 1;
 };
 
@@ -52,6 +56,9 @@ class SoftSolvers {
 template <>
 class SoftSolvers<double> {
  public:
+  SoftSolvers() = default;
+  SoftSolvers(const SoftSolvers&) = delete;
+  SoftSolvers& operator=(const SoftSolvers&) = delete;
   void begin(bool) {}
   void fallBack() {}
   template <class Function>
@@ -62,7 +69,8 @@ class SoftSolvers<double> {
   void setKernel(KernelTarget target) { solver_.setKernel(target); }
 
  private:
-  BlockSolver<double, PlainNumbers<double, false>> solver_;
+  BlockMemory memory_;
+  BlockSolver<double, PlainNumbers<double, false>> solver_{memory_};
 };
 #endif
 
