@@ -160,7 +160,8 @@ struct Wiring {
   void* data = nullptr;
 };
 
-/// Does what the command says. Not called apply: a command is a variant, and std::apply would be found for it.
+/// Does what the command says. Not called apply: a command is a variant, and std::apply would be found for
+/// it.
 /// @return the id of a spawned body, else an id that is not valid()
 /// @throws what the Space throws; MissingCallback for a UserInput without a function
 template <Scalar S>
