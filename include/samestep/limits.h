@@ -50,7 +50,7 @@ inline constexpr S kMaxForce = S(1 << 30);
 template <Scalar S>
 inline constexpr S kMaxCenterOfMass = S(1 << 8);
 /// How many pairs of shapes a Space may hold, unless it or who reads a world says otherwise: four for each of
-/// the bodies that a reader lets in. A step takes up to 2.6 KB for each of them.
+/// the bodies that a reader lets in. A step takes up to 3.3 KB for each of them, see docs/formats.md.
 inline constexpr std::uint32_t kDefaultMaxPairs = 1u << 18;
 /// The most it may be told to hold.
 inline constexpr std::uint32_t kMostPairs = 1u << 28;

@@ -190,6 +190,8 @@ BoxTree::Place BoxTree::choosePlace(const GridBox& box, Place start) {
   return findSibling(box, 0);
 }
 
+// Makes the tree higher by one at the most: a rotation makes its node one higher where the other side is at
+// least as high as this one has become, and then what this one gained does not count.
 void BoxTree::insertBelow(Place start, Ref leaf, const GridBox& box) {
   const Place place = choosePlace(box, start);
   const bool tall = height() >= kMaxHeight;

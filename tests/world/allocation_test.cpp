@@ -23,18 +23,25 @@ std::atomic<std::size_t> mostLive = 0;
 /// How many more calls take memory before one fails; none fails below 0.
 std::atomic<long> untilFailure = -1;
 
-void* counted(void* memory) {
+/// Null where the call is to fail, or there is no memory.
+void* countedOrNull(void* memory) noexcept {
   ++allocations;
   if (untilFailure >= 0 && untilFailure-- == 0) {
     std::free(memory);
-    throw std::bad_alloc();
+    return nullptr;
   }
-  if (memory == nullptr) throw std::bad_alloc();
+  if (memory == nullptr) return nullptr;
   const std::size_t now = live += malloc_usable_size(memory);
   std::size_t most = mostLive;
   while (now > most && !mostLive.compare_exchange_weak(most, now)) {
   }
   return memory;
+}
+
+void* counted(void* memory) {
+  void* given = countedOrNull(memory);
+  if (given == nullptr) throw std::bad_alloc();
+  return given;
 }
 
 void release(void* memory) {
@@ -52,6 +59,13 @@ void* operator new(std::size_t size) { return counted(std::malloc(size)); }
 void* operator new[](std::size_t size) { return counted(std::malloc(size)); }
 void* operator new(std::size_t size, std::align_val_t alignment) { return aligned(size, alignment); }
 void* operator new[](std::size_t size, std::align_val_t alignment) { return aligned(size, alignment); }
+// Sorting takes its buffer through this form; without it, another library's would answer to `delete` below.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return countedOrNull(std::malloc(size));
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return countedOrNull(std::malloc(size));
+}
 void operator delete(void* memory) noexcept { release(memory); }
 void operator delete[](void* memory) noexcept { release(memory); }
 void operator delete(void* memory, std::size_t) noexcept { release(memory); }
