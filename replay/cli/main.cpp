@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
   addDraw(app, result);
   addChart(app, result);
   addEnvelope(app, result);
+  addNetsim(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

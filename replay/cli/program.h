@@ -41,6 +41,7 @@ void addDiff(CLI::App& app, int& result);
 void addDraw(CLI::App& app, int& result);
 void addChart(CLI::App& app, int& result);
 void addEnvelope(CLI::App& app, int& result);
+void addNetsim(CLI::App& app, int& result);
 
 /// Adds --scalar with the scalars of this build.
 void addScalarOption(CLI::App& app, std::string& scalar);

@@ -291,5 +291,23 @@ TEST_F(ProgramTest, ScenesAreFoundInTheFolderTheEnvironmentNames) {
   EXPECT_THAT(run("scenes").out, Not(HasSubstr("my own")));
 }
 
+TEST_F(ProgramTest, NetsimPlaysMatchesThatEndTheSameEverywhere) {
+  const Outcome outcome = run("netsim --seeds 1-4 --peers 2-5 --ticks 200");
+
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("4 matches, 0 failed"));
+}
+
+TEST_F(ProgramTest, AFailingSeedPrintsTheCommandThatRepeatsIt) {
+  const std::string command = "netsim --seeds 3 --peers 4 --ticks 200 --fault loss,drift --plant flip";
+  const Outcome outcome = run(command);
+
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("again: samestep " + command));
+  EXPECT_THAT(outcome.out, HasSubstr("smaller: samestep netsim --seeds 3 --peers 2"));
+  EXPECT_EQ(run("netsim --seeds 9-2").code, 2);
+  EXPECT_EQ(run("netsim --seeds 1 --fault earthquake").code, 2);
+}
+
 }  // namespace
 }  // namespace samestep

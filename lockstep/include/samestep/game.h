@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace samestep {
+
+/// A step of the match, counted from 0. At 60 Hz it lasts for two years.
+using Tick = std::uint32_t;
+
+/// Seats of a match, 0 to 15.
+using Seat = std::uint8_t;
+inline constexpr Seat kMaxPlayers = 16;
+inline constexpr Seat kNoSeat = 0xff;
+
+/// What one player does in one tick.
+///
+/// A game must not ask whether an input was predicted: the session alone knows, and repeats the step with the
+/// true one where it was wrong.
+struct PlayerInput {
+  /// False before the player has joined and after it has left or was dropped.
+  bool present = false;
+  /// What is held: buttons, sticks. Predicted while the true one is on its way. At most
+  /// SessionSettings::maxHeldBytes.
+  std::span<const std::uint8_t> held;
+  /// What happens once, as a menu choice or a chat line: never predicted, never lost, never applied twice. At
+  /// most SessionSettings::maxCommandBytes.
+  std::span<const std::uint8_t> commands;
+};
+
+/// What all players do in one tick, by seat.
+struct TickInputs {
+  Tick tick = 0;
+  std::span<const PlayerInput> players;
+};
+
+/// A game as four functions: the session asks, the game obeys. `data` is handed to each of them.
+///
+/// The state must depend on nothing but the state before and the inputs.
+struct Game {
+  void* data = nullptr;
+  /// Keeps the present state under a number below Session::slots(), in place of what was there.
+  void (*save)(std::uint32_t slot, void* data) = nullptr;
+  /// Brings back what was kept last under this number.
+  void (*load)(std::uint32_t slot, void* data) = nullptr;
+  /// Makes one step.
+  void (*step)(const TickInputs& inputs, void* data) = nullptr;
+  /// A number that differs where two states differ; the same on every machine.
+  std::uint64_t (*hash)(void* data) = nullptr;
+
+  // Needed only where players join or watch a match under way.
+
+  /// Writes the present state if `into` has room for it.
+  /// @return the bytes needed
+  std::uint64_t (*write)(std::span<std::uint8_t> into, void* data) = nullptr;
+  /// Takes a state that another peer wrote. These bytes come from outside.
+  /// @return false for bytes that are no state; the game is then as before
+  bool (*read)(std::span<const std::uint8_t> bytes, void* data) = nullptr;
+};
+
+}  // namespace samestep

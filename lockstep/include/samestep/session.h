@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <samestep/game.h>
+#include <samestep/transport.h>
+
+#include <cstdint>
+#include <span>
+
+namespace samestep {
+
+/// Which steps of the present are saved, to be gone back to.
+enum class Saving : std::uint8_t {
+  everyStep,  ///< Each one that is not certain yet: a rollback repeats no more than it must.
+  sparse,     ///< The last certain one only: for games whose saves cost more than their steps.
+};
+
+/// What a player that was not heard yet is taken to hold.
+enum class Prediction : std::uint8_t {
+  repeatLast,  ///< What it held last.
+  nothing,
+};
+
+struct SessionSettings {
+  /// Tells this match from others that the same peers play.
+  std::uint32_t match = 0;
+  /// Seats taken at the start, 2 to 16, and which of them is ours.
+  std::uint8_t players = 2;
+  Seat localSeat = 0;
+  /// Where the transport finds each seat.
+  Address addresses[kMaxPlayers] = {};
+  /// How many steps may be made ahead of the last certain one, 0 to kMaxWindow. 0: pure lockstep, which
+  /// neither predicts nor saves.
+  std::uint8_t window = 8;
+  /// Ticks between an input and the step that uses it, 0 to kMaxInputDelay.
+  std::uint8_t inputDelay = 2;
+  /// Steps that are shown before they are made, 0 to kMaxRunAhead.
+  std::uint8_t runAhead = 0;
+  Saving saving = Saving::everyStep;
+  Prediction prediction = Prediction::repeatLast;
+  /// 1 to 64, the same for all peers.
+  std::uint8_t maxHeldBytes = 8;
+  /// 0 to 128, the same for all peers.
+  std::uint8_t maxCommandBytes = 32;
+  /// Hashes are compared after each so many steps; 0: never. The same for all peers.
+  std::uint16_t hashInterval = 60;
+  // All peers compare these before they start; see SpaceGame::describe.
+  std::uint32_t revision = 0;
+  std::uint64_t fingerprint = 0;
+  std::uint64_t content = 0;
+  // Microseconds.
+  std::uint32_t resendAfter = 50'000;
+  std::uint32_t interruptedAfter = 500'000;
+  /// A peer that is silent for so long is dropped by the others.
+  std::uint32_t dropAfter = 3'000'000;
+  /// A match that cannot go on, for most of its players are gone, ends after so long.
+  std::uint32_t endAfter = 15'000'000;
+};
+
+inline constexpr std::uint8_t kMaxWindow = 16;
+inline constexpr std::uint8_t kMaxInputDelay = 16;
+inline constexpr std::uint8_t kMaxRunAhead = 4;
+
+enum class SessionState : std::uint8_t {
+  connecting,  ///< Some peers were not heard yet.
+  running,
+  ended,  ///< For good; endReason() says why.
+};
+
+enum class EndReason : std::uint8_t {
+  none,
+  left,      ///< By leave().
+  refused,   ///< A peer has another build, game or settings.
+  dropped,   ///< The others went on without us.
+  minority,  ///< Most players are gone, and might play on together.
+  diverged,  ///< The others agreed on fewer inputs of a player than this peer has used for certain.
+};
+const char* endReasonName(EndReason reason);
+
+/// Something that the game may want to show.
+struct SessionEvent {
+  enum class Kind : std::uint8_t {
+    started,
+    refused,      ///< `seat` has another value of what `detail` says, a Mismatch.
+    interrupted,  ///< `seat` is silent.
+    resumed,      ///< `seat` is heard again.
+    paused,       ///< `seat` said that it pauses.
+    unpaused,
+    left,     ///< `seat` has its last input at the tick before `tick`.
+    dropped,  ///< The same, agreed by the others.
+    desync,   ///< The states after `tick` steps differ: `local` here, `remote` at `seat`.
+    ended,
+  };
+  Kind kind = Kind::started;
+  Seat seat = kNoSeat;
+  std::uint8_t detail = 0;
+  Tick tick = 0;
+  std::uint64_t local = 0;
+  std::uint64_t remote = 0;
+};
+
+/// In what two peers differ that want to play together.
+enum class Mismatch : std::uint8_t { none, protocol, players, settings, revision, fingerprint, content };
+
+/// What came of a frame.
+enum class Frame : std::uint8_t {
+  advanced,  ///< A step was made.
+  waiting,   ///< For the inputs of others: show the last one again.
+  paused,
+  idle,  ///< Not running.
+};
+
+struct SessionStats {
+  std::uint64_t steps = 0;  ///< Made, repeated ones included.
+  std::uint64_t rollbacks = 0;
+  std::uint64_t saves = 0;
+  std::uint32_t deepest = 0;    ///< Rollback, in steps.
+  std::uint64_t waited = 0;     ///< Frames without a step.
+  std::uint64_t sentBytes = 0;  ///< Payload of datagrams.
+  std::uint64_t sentPackets = 0;
+  std::uint64_t badPackets = 0;  ///< Dropped: malformed, of another match, of nobody known.
+  std::uint64_t lostEvents = 0;  ///< Not fetched in time.
+};
+
+/// A networked match of 2 to 16 players without a host: each peer runs the whole game, and only inputs
+/// travel.
+///
+///     Session session(settings, game, transport);
+///     each frame: session.frame(now, held);  while (session.next(event)) show(event);
+///
+/// It reads no clock: `now` is in microseconds since any moment, and never goes back. After construction it
+/// takes no memory. All peers apply the same inputs in the same ticks and so, the game being deterministic,
+/// go through the same states.
+class Session {
+ public:
+  /// @throws ValueOutOfRange for settings outside their ranges or a game without a function
+  Session(const SessionSettings& settings, const Game& game, const Transport& transport);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Takes in what has arrived, takes back what was predicted wrongly, and makes a step if it may.
+  /// @param held  what the local player holds, at most maxHeldBytes; for the tick inputDelay() ahead
+  /// @throws ValueOutOfRange for more bytes
+  Frame frame(std::uint64_t now, std::span<const std::uint8_t> held);
+  /// Only talks to the others: for between two frames, and for while none are made.
+  void poll(std::uint64_t now);
+  /// Queues a command of the local player for the next input that has room.
+  /// @return false where too many wait: try again later
+  /// @throws ValueOutOfRange for one longer than maxCommandBytes
+  bool command(std::span<const std::uint8_t> bytes);
+
+  /// Leaves the match with the next input; poll until the state is ended.
+  void leave();
+  /// While paused, no inputs are made: all others wait.
+  void pause(bool paused);
+  /// @throws ValueOutOfRange; from the next frame on. All may change at any time, and differ between peers.
+  void setInputDelay(std::uint8_t ticks);
+  void setWindow(std::uint8_t ticks);
+  void setRunAhead(std::uint8_t ticks);
+  void setSaving(Saving saving);
+  std::uint8_t inputDelay() const;
+  std::uint8_t window() const;
+
+  SessionState state() const;
+  EndReason endReason() const;
+  /// Steps made, and steps whose inputs are all known; the latter may be ahead.
+  Tick tick() const;
+  Tick confirmed() const;
+  /// How many numbers Game::save uses.
+  std::uint32_t slots() const;
+  /// Bit by seat: who plays now.
+  std::uint16_t present() const;
+  /// How long a frame should last, in thousandths of the usual: over 1000 for who is ahead of the others.
+  /// Stays within 950 to 1050.
+  std::uint32_t frameLength() const;
+  /// Takes the oldest event. 64 are kept.
+  bool next(SessionEvent& event);
+  const SessionStats& stats() const;
+
+ private:
+  struct Impl;
+  Impl* impl_;
+};
+
+}  // namespace samestep

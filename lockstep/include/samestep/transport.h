@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace samestep {
+
+/// Who a transport sends to and receives from: a number that the transport gives to each peer.
+using Address = std::uint64_t;
+
+/// The longest datagram, so that none is cut into pieces on its way.
+inline constexpr std::uint32_t kMaxDatagram = 1200;
+
+/// Datagrams, as UDP has them: each arrives once, never, twice, late or out of order. `data` is handed to
+/// both functions.
+struct Transport {
+  void* data = nullptr;
+  /// Takes a datagram of at most kMaxDatagram bytes; does not wait.
+  void (*send)(Address to, std::span<const std::uint8_t> bytes, void* data) = nullptr;
+  /// Writes the next datagram that has arrived into `into` and its sender into `from`; does not wait.
+  /// @return its length, or 0 if there is none; a longer one than `into` is dropped
+  std::uint32_t (*receive)(Address& from, std::span<std::uint8_t> into, void* data) = nullptr;
+};
+
+}  // namespace samestep

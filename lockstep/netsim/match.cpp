@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: MIT
+#include "netsim/match.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
+
+#include "netsim/oracle.h"
+#include "netsim/peer.h"
+
+namespace samestep::netsim {
+namespace {
+
+constexpr Time kSecond = 1'000'000;
+/// Strangers' datagrams come from here.
+constexpr Address kNobody = kMaxPlayers;
+
+/// Something that happens once.
+struct Happening {
+  enum class Kind : std::uint8_t { partition, heal, stall, crash, leave, change, pause };
+  Time time = 0;
+  Kind kind = Kind::heal;
+  Seat seat = 0;
+  Time lasts = 0;
+  std::uint32_t seats = 0;
+};
+
+class Match {
+ public:
+  explicit Match(const MatchOptions& options)
+      : options_(options),
+        random_(Random::mix(options.seed) + options.peers),
+        network_(kMaxPlayers + 1, random_.next()) {
+    shapeLinks();
+    addPeers();
+    plan();
+    plant();
+  }
+
+  MatchReport run();
+
+ private:
+  bool has(Fault fault) const { return (options_.faults & fault) != 0; }
+  void shapeLinks();
+  void addPeers();
+  void plan();
+  void plant();
+  void happen(const Happening& happening);
+  void change(Session& session);
+  void partition(std::uint32_t seats, bool blocked);
+  void disturb(Time now);
+  bool finished() const;
+
+  const MatchOptions& options_;
+  Random random_;
+  Network network_;
+  std::vector<std::unique_ptr<Peer>> peers_;
+  std::vector<Happening> plan_;
+  Oracle oracle_;
+  Tick plantedTick_ = 0;
+  Seat plantedSeat_ = 0;
+};
+
+void Match::shapeLinks() {
+  const Time delay = random_.within(1, 80) * 1000;
+  for (Address from = 0; from < options_.peers; ++from) {
+    for (Address to = 0; to < options_.peers; ++to) {
+      LinkProfile& profile = network_.profile(from, to);
+      profile.delay = delay + random_.below(10'000);
+      if (has(kAsymmetric) && from < to) profile.delay += random_.below(60'000);
+      if (!has(kLoss)) continue;
+      profile.jitter = random_.below(30'000);
+      profile.loss = random_.below(60);
+      profile.lossBad = random_.within(200, 700);
+      profile.toBad = random_.below(20);
+      profile.duplicate = random_.below(50);
+      profile.burst = random_.below(8);
+      profile.burstLasts = random_.below(150) * 1000;
+      if (random_.perMille(200)) {
+        profile.bandwidth = 40'000;
+        profile.queue = 8'000;
+      }
+    }
+  }
+}
+
+void Match::addPeers() {
+  SessionSettings settings;
+  settings.match = static_cast<std::uint32_t>(options_.seed);
+  settings.players = static_cast<std::uint8_t>(options_.peers);
+  settings.maxHeldBytes = 4;
+  settings.maxCommandBytes = 16;
+  settings.hashInterval = static_cast<std::uint16_t>(random_.within(1, 60));
+  for (Seat seat = 0; seat < options_.peers; ++seat) settings.addresses[seat] = seat;
+  for (Seat seat = 0; seat < options_.peers; ++seat) {
+    settings.localSeat = seat;
+    settings.window = static_cast<std::uint8_t>(random_.perMille(200) ? 0 : random_.within(1, kMaxWindow));
+    settings.inputDelay = static_cast<std::uint8_t>(random_.within(settings.window == 0 ? 3 : 0, 8));
+    settings.saving = random_.perMille(400) ? Saving::sparse : Saving::everyStep;
+    settings.prediction = random_.perMille(200) ? Prediction::nothing : Prediction::repeatLast;
+    settings.runAhead =
+        static_cast<std::uint8_t>(random_.perMille(200) ? random_.within(1, kMaxRunAhead) : 0);
+    peers_.push_back(std::make_unique<Peer>(settings, options_, network_, random_.next()));
+    peers_.back()->stallUntil(random_.below(200'000));
+    if (!has(kDrift)) continue;
+    peers_.back()->setDrift(static_cast<std::int32_t>(random_.within(0, 300)) - 150, random_.next() >> 24);
+  }
+}
+
+/// Plans what happens, so that at no time half of the peers are gone.
+void Match::plan() {
+  using Kind = Happening::Kind;
+  const Time length = Time{options_.ticks} * kSecond / 60;
+  const auto when = [&] { return length / 10 + random_.next() % (length * 6 / 10 + 1); };
+  const auto seat = [&] { return static_cast<Seat>(random_.below(options_.peers)); };
+  // Seat 0 breaks ties, and stays.
+  const auto mayGo = [&] { return static_cast<Seat>(random_.within(1, options_.peers - 1)); };
+  std::uint32_t spare = (options_.peers - 1) / 2;
+  if (has(kCrash) && spare > 0 && random_.perMille(600)) {
+    --spare;
+    plan_.push_back({when(), Kind::crash, mayGo(), 0, 0});
+  }
+  if (has(kLeave) && random_.perMille(500)) plan_.push_back({when(), Kind::leave, seat(), 0, 0});
+  for (std::uint32_t i = 0; has(kStall) && i < 2; ++i) {
+    // Now and then long enough to be dropped.
+    const bool dropped = spare > 0 && random_.perMille(200);
+    if (dropped) --spare;
+    plan_.push_back({when(), Kind::stall, dropped ? mayGo() : seat(),
+                     random_.below(2000) * 1000 + (dropped ? 6 * kSecond : 0), 0});
+  }
+  for (std::uint32_t i = 0; has(kChange) && i < 8 * options_.peers; ++i)
+    plan_.push_back({when(), Kind::change, seat(), 0, 0});
+  if (has(kChange)) plan_.push_back({when(), Kind::pause, seat(), random_.below(3000) * 1000, 0});
+  if (has(kPartition)) {
+    const bool dropped = spare > 0 && random_.perMille(300);
+    const Time start = when();
+    const Time lasts = random_.below(2000) * 1000 + (dropped ? 5 * kSecond : 0);
+    const std::uint32_t seats = 1u << mayGo();
+    plan_.push_back({start, Kind::partition, 0, lasts, seats});
+    plan_.push_back({start + lasts, Kind::heal, 0, 0, seats});
+  }
+  for (const Happening& happening : plan_) {
+    if (happening.kind == Kind::stall || happening.kind == Kind::crash) oracle_.excuse(happening.seat);
+    for (Seat i = 0; i < options_.peers; ++i) {
+      if ((happening.seats >> i & 1) != 0) oracle_.excuse(i);
+    }
+  }
+  std::stable_sort(plan_.begin(), plan_.end(),
+                   [](const Happening& a, const Happening& b) { return a.time < b.time; });
+}
+
+void Match::plant() {
+  if (options_.planted == Planted::none) return;
+  plantedSeat_ = static_cast<Seat>(random_.below(options_.peers));
+  plantedTick_ = random_.within(options_.ticks / 4, options_.ticks / 2);
+  peers_[plantedSeat_]->plant(options_.planted, plantedTick_);
+}
+
+void Match::partition(std::uint32_t seats, bool blocked) {
+  for (Address from = 0; from < options_.peers; ++from) {
+    for (Address to = 0; to < options_.peers; ++to) {
+      if ((seats >> from & 1) != (seats >> to & 1)) network_.block(from, to, blocked);
+    }
+  }
+}
+
+void Match::change(Session& session) {
+  const auto value = [&](std::uint32_t most) { return static_cast<std::uint8_t>(random_.within(0, most)); };
+  switch (random_.below(4)) {
+    case 0:
+      session.setInputDelay(value(10));
+      break;
+    case 1:
+      session.setRunAhead(value(random_.perMille(700) ? 0 : kMaxRunAhead));
+      break;
+    case 2:
+      session.setSaving(random_.perMille(500) ? Saving::sparse : Saving::everyStep);
+      break;
+    default:
+      session.setWindow(value(kMaxWindow));
+      if (session.window() == 0 && session.inputDelay() < 3) session.setInputDelay(3);
+  }
+}
+
+void Match::happen(const Happening& happening) {
+  Peer& peer = *peers_[happening.seat];
+  switch (happening.kind) {
+    case Happening::Kind::partition:
+      return partition(happening.seats, true);
+    case Happening::Kind::heal:
+      return partition(happening.seats, false);
+    case Happening::Kind::stall:
+      return peer.stallUntil(happening.time + happening.lasts);
+    case Happening::Kind::crash:
+      return peer.crash();
+    case Happening::Kind::leave:
+      return peer.session().leave();
+    case Happening::Kind::change:
+      return change(peer.session());
+    case Happening::Kind::pause:
+      return peer.pauseUntil(happening.time + happening.lasts);
+  }
+}
+
+/// Strangers' bytes, and datagrams heard on the way that come again.
+void Match::disturb(Time now) {
+  if (!has(kHostile) || !random_.perMille(300)) return;
+  const Address to = random_.below(options_.peers);
+  auto& box = network_.inbox(to);
+  if (!box.empty() && random_.perMille(500)) {
+    network_.send(box.front().from, to, std::vector(box.front().bytes), now);
+    return;
+  }
+  std::vector<std::uint8_t> bytes(random_.within(1, kMaxDatagram));
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random_.next());
+  if (random_.perMille(500)) bytes[0] &= 15;
+  network_.send(kNobody, to, bytes, now);
+}
+
+/// Whether all who still play are sure of the last tick.
+bool Match::finished() const {
+  return std::all_of(peers_.begin(), peers_.end(),
+                     [&](const auto& peer) { return !peer->running() || peer->certain() >= options_.ticks; });
+}
+
+MatchReport Match::run() {
+  // Waiting for those who are dropped, paused and stalled, and slow links, take their time.
+  const Time limit = Time{options_.ticks} * kSecond / 30 + 60 * kSecond;
+  const Tick quietFrom = options_.ticks > 120 ? options_.ticks - 120 : 0;
+  std::size_t planned = 0;
+  Time now = 0;
+  while (now < limit && !finished()) {
+    Peer* next = nullptr;
+    for (const auto& peer : peers_) {
+      if (peer->running() && (next == nullptr || peer->next() < next->next())) next = peer.get();
+    }
+    if (next == nullptr) break;
+    now = std::max(now, next->next());
+    if (planned < plan_.size() && plan_[planned].time <= now) {
+      happen(plan_[planned++]);
+      continue;
+    }
+    disturb(now);
+    network_.deliver(now);
+    next->frame(now, next->session().tick() >= quietFrom);
+  }
+  MatchReport report = oracle_.judge(options_, peers_, plantedSeat_, plantedTick_);
+  report.milliseconds = now / 1000;
+  report.datagrams = network_.sent();
+  report.lost = network_.lost();
+  return report;
+}
+
+}  // namespace
+
+MatchReport runMatch(const MatchOptions& options) { return Match(options).run(); }
+
+MatchOptions shrink(const MatchOptions& failing) {
+  MatchOptions best = failing;
+  const auto fails = [](const MatchOptions& options) { return !runMatch(options).violations.empty(); };
+  const auto tryIt = [&](MatchOptions smaller) {
+    if (fails(smaller)) best = smaller;
+  };
+  for (std::uint32_t fault = 1; fault <= kAllFaults; fault <<= 1) {
+    MatchOptions smaller = best;
+    smaller.faults &= ~fault;
+    if (smaller.faults != best.faults) tryIt(smaller);
+  }
+  while (best.peers > 2) {
+    MatchOptions smaller = best;
+    --smaller.peers;
+    if (!fails(smaller)) break;
+    best = smaller;
+  }
+  while (best.ticks >= 120) {
+    MatchOptions smaller = best;
+    smaller.ticks /= 2;
+    if (!fails(smaller)) break;
+    best = smaller;
+  }
+  return best;
+}
+
+namespace {
+
+constexpr std::array<std::pair<const char*, std::uint32_t>, 10> kFaultNames{{{"loss", kLoss},
+                                                                             {"partition", kPartition},
+                                                                             {"stall", kStall},
+                                                                             {"crash", kCrash},
+                                                                             {"leave", kLeave},
+                                                                             {"change", kChange},
+                                                                             {"drift", kDrift},
+                                                                             {"hostile", kHostile},
+                                                                             {"asymmetric", kAsymmetric},
+                                                                             {"all", kAllFaults}}};
+
+}  // namespace
+
+std::uint32_t faultNamed(const std::string& name) {
+  for (const auto& [known, fault] : kFaultNames) {
+    if (name == known) return fault;
+  }
+  return 0;
+}
+
+std::string faultNames(std::uint32_t faults) {
+  if (faults == kAllFaults) return "all";
+  std::string text;
+  for (const auto& [name, fault] : kFaultNames) {
+    if (fault != kAllFaults && (faults & fault) != 0) text += (text.empty() ? "" : ",") + std::string(name);
+  }
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace samestep::netsim

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// A whole match over a simulated network, all of it from one seed, and the oracle that watches it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "netsim/sim_game.h"
+
+namespace samestep::netsim {
+
+/// What may go wrong in a match, each from the seed.
+enum Fault : std::uint32_t {
+  kLoss = 1,          ///< Bad links: loss in runs, duplicates, bursts, jitter, narrow bandwidth.
+  kPartition = 2,     ///< Some peers cannot hear others for a while.
+  kStall = 4,         ///< A peer stands still for a while, as a tab in the background.
+  kCrash = 8,         ///< A peer is gone from one moment to the next.
+  kLeave = 16,        ///< A peer leaves.
+  kChange = 32,       ///< Input delay, window, saving, run-ahead and pause change in the match.
+  kDrift = 64,        ///< Clocks run at different speeds, up to 300 ppm apart, and from different zeros.
+  kHostile = 128,     ///< Strangers send bytes; old datagrams come again.
+  kAsymmetric = 256,  ///< Links are slower one way.
+};
+inline constexpr std::uint32_t kAllFaults = 511;
+/// "loss", "partition", ...; 0 for another word.
+std::uint32_t faultNamed(const std::string& name);
+std::string faultNames(std::uint32_t faults);
+
+/// What is broken on purpose, to see that the oracle notices.
+enum class Planted : std::uint8_t {
+  none,
+  flip,     ///< One bit of one peer's state, once.
+  deaf,     ///< One peer's game does not see one input that all others see.
+  forgets,  ///< One peer's game does not come back wholly from a load, once.
+};
+
+struct MatchOptions {
+  std::uint64_t seed = 1;
+  std::uint32_t peers = 4;
+  Tick ticks = 3600;
+  std::uint32_t faults = kAllFaults;
+  Planted planted = Planted::none;
+  std::unique_ptr<SimGame> (*makeGame)() = makeIntegerGame;
+};
+
+struct MatchReport {
+  /// Empty when all is well.
+  std::vector<std::string> violations;
+  /// Peers that told of a desync, bit by seat, and the tick they told it for first.
+  std::uint32_t desynced = 0;
+  Tick desyncTick = 0;
+  /// What happened in the match, for the record of what seeds cover.
+  std::uint32_t survivors = 0;
+  std::uint32_t dropped = 0;
+  std::uint32_t left = 0;
+  std::uint64_t steps = 0;
+  std::uint64_t rollbacks = 0;
+  std::uint32_t deepest = 0;
+  std::uint64_t waited = 0;
+  std::uint64_t datagrams = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t payload = 0;
+  std::uint64_t milliseconds = 0;  ///< Virtual.
+  /// Of everything that was certain: equal where runs are.
+  std::uint64_t trace = 0;
+};
+
+MatchReport runMatch(const MatchOptions& options);
+
+/// Looks for a smaller match that fails: fewer faults, fewer peers, fewer ticks, but at least 60.
+MatchOptions shrink(const MatchOptions& failing);
+
+}  // namespace samestep::netsim

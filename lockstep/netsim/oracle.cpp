@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "netsim/oracle.h"
+
+#include <algorithm>
+
+namespace samestep::netsim {
+namespace {
+
+bool survives(const Peer& peer) { return peer.running(); }
+
+/// The first event of a kind that a peer told of a seat, or null.
+const SessionEvent* eventOf(const Peer& peer, SessionEvent::Kind kind, Seat seat) {
+  const auto found = std::find_if(peer.events().begin(), peer.events().end(), [&](const SessionEvent& event) {
+    return event.kind == kind && (seat == kNoSeat || event.seat == seat);
+  });
+  return found == peer.events().end() ? nullptr : &*found;
+}
+
+/// The first tick from which somebody was agreed to be gone. Whoever was dropped may be sure of more than
+/// that.
+Tick firstDrop(const Peer& reference) {
+  Tick first = 0xffffffffu;
+  for (const SessionEvent& event : reference.events()) {
+    if (event.kind == SessionEvent::Kind::dropped) first = std::min(first, event.tick);
+  }
+  return first;
+}
+
+std::string nameOf(Tick seat) { return "peer " + std::to_string(seat); }
+
+}  // namespace
+
+void Oracle::violate(const std::string& text) { report_.violations.push_back(text); }
+
+/// What is certain is the same everywhere.
+void Oracle::states(const Oracle::Peers& peers, const Peer& reference) {
+  const Tick agreed = firstDrop(reference);
+  for (Seat seat = 0; seat < peers.size(); ++seat) {
+    const Peer& peer = *peers[seat];
+    if (peer.misused()) violate(nameOf(seat) + " was asked to step from a state that it did not have");
+    const Tick to = std::min({peer.certain(), reference.certain(), survives(peer) ? 0xffffffffu : agreed});
+    for (Tick tick = 0; tick < to; ++tick) {
+      const TickRecord &a = peer.records()[tick], &b = reference.records()[tick];
+      if (a.inputs == b.inputs && a.state == b.state) continue;
+      violate(nameOf(seat) + (a.inputs != b.inputs ? ": inputs" : ": states") + " of tick " +
+              std::to_string(tick) + " differ");
+      break;
+    }
+  }
+}
+
+/// What players did arrived, once, in its order, and nothing else.
+void Oracle::inputs(const Oracle::Peers& peers, const Peer& reference) {
+  for (Seat seat = 0; seat < peers.size(); ++seat) {
+    std::uint32_t held = 0;
+    std::uint32_t commands = 0;
+    for (Tick tick = 0; tick < reference.certain(); ++tick) {
+      const TickRecord& record = reference.records()[tick];
+      if (record.held[seat] != 0 && record.held[seat] < held) {
+        return violate("what " + nameOf(seat) + " holds goes back at tick " + std::to_string(tick));
+      }
+      held = std::max(held, record.held[seat]);
+      if (record.command[seat] == 0) continue;
+      if (record.command[seat] != commands + 1) {
+        return violate("of " + nameOf(seat) + " command " + std::to_string(record.command[seat]) +
+                       " came after " + std::to_string(commands) + " at tick " + std::to_string(tick));
+      }
+      ++commands;
+    }
+    const Peer& peer = *peers[seat];
+    const bool all = survives(peer) || eventOf(reference, SessionEvent::Kind::left, seat) != nullptr;
+    if (held > peer.heldGiven() || commands > peer.commandsGiven() ||
+        (all && commands < peer.commandsGiven())) {
+      violate(nameOf(seat) + " gave " + std::to_string(peer.commandsGiven()) + " commands, of which " +
+              std::to_string(commands) + " were applied");
+    }
+  }
+}
+
+/// The detector is silent where all is well, and speaks on both sides where not.
+void Oracle::detector(const MatchOptions& options, const Oracle::Peers& peers, Seat plantedSeat,
+                      Tick plantedTick) {
+  for (Seat seat = 0; seat < peers.size(); ++seat) {
+    const SessionEvent* event = eventOf(*peers[seat], SessionEvent::Kind::desync, kNoSeat);
+    if (event == nullptr) continue;
+    report_.desynced |= 1u << seat;
+    report_.desyncTick = report_.desyncTick == 0 ? event->tick : std::min(report_.desyncTick, event->tick);
+  }
+  if (options.planted == Planted::none) {
+    if (report_.desynced != 0) violate("a false desync at tick " + std::to_string(report_.desyncTick));
+    return;
+  }
+  if (!survives(*peers[plantedSeat]) || report_.violations.empty()) return;
+  for (Seat seat = 0; seat < peers.size(); ++seat) {
+    const Peer& peer = *peers[seat];
+    if (!survives(peer) || peer.certain() < plantedTick + 120) continue;
+    const bool sees =
+        eventOf(peer, SessionEvent::Kind::desync, seat == plantedSeat ? kNoSeat : plantedSeat) != nullptr;
+    if (!sees) violate(nameOf(seat) + " did not notice the desync");
+  }
+}
+
+/// Once the faults are over, the match goes on to its end.
+void Oracle::progress(const MatchOptions& options, const Oracle::Peers& peers) {
+  for (Seat seat = 0; seat < peers.size(); ++seat) {
+    if (!survives(*peers[seat]) || peers[seat]->certain() >= options.ticks) continue;
+    violate(nameOf(seat) + " is sure of " + std::to_string(peers[seat]->certain()) + " ticks only, of " +
+            std::to_string(options.ticks));
+  }
+}
+
+void Oracle::endings(const Oracle::Peers& peers) {
+  for (Seat seat = 0; seat < peers.size(); ++seat) {
+    const Peer& peer = *peers[seat];
+    if (peer.running() || peer.crashed()) continue;
+    const EndReason reason = peer.ended();
+    if (reason == EndReason::left) {
+      ++report_.left;
+    } else if ((excused_ >> seat & 1) != 0) {
+      ++report_.dropped;
+    } else {
+      violate(nameOf(seat) + " ended without a cause: " + endReasonName(reason));
+    }
+  }
+}
+
+void Oracle::count(const Oracle::Peers& peers, const Peer& reference) {
+  for (const auto& peer : peers) {
+    const SessionStats& stats = peer->session().stats();
+    report_.survivors += survives(*peer) ? 1 : 0;
+    report_.dropped += peer->crashed() ? 1 : 0;
+    report_.steps += stats.steps;
+    report_.rollbacks += stats.rollbacks;
+    report_.deepest = std::max(report_.deepest, stats.deepest);
+    report_.waited += stats.waited;
+    report_.payload += stats.sentBytes;
+  }
+  for (Tick tick = 0; tick < reference.certain(); ++tick) {
+    const TickRecord& record = reference.records()[tick];
+    report_.trace = Random::mix(report_.trace * 31 + record.inputs + record.state);
+  }
+}
+
+MatchReport Oracle::judge(const MatchOptions& options, const Oracle::Peers& peers, Seat plantedSeat,
+                          Tick plantedTick) {
+  const Peer* reference = nullptr;
+  for (const auto& peer : peers) {
+    if (survives(*peer) && (reference == nullptr || peer->certain() > reference->certain()))
+      reference = peer.get();
+  }
+  endings(peers);
+  if (reference == nullptr) {
+    // Of two, one may leave and the other be gone.
+    if (report_.left == 0 && excused_ == 0) violate("nobody is left");
+    return report_;
+  }
+  states(peers, *reference);
+  detector(options, peers, plantedSeat, plantedTick);
+  inputs(peers, *reference);
+  progress(options, peers);
+  count(peers, *reference);
+  return report_;
+}
+
+}  // namespace samestep::netsim

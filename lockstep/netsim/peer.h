@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// A peer of a simulated match: a session, a game, a clock and a player.
+#pragma once
+
+#include <samestep/session.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "netsim/match.h"
+#include "netsim/network.h"
+
+namespace samestep::netsim {
+
+/// What a peer's game saw of a tick when it made that step last.
+struct TickRecord {
+  std::uint64_t inputs = 0;  ///< A digest of all inputs.
+  std::uint64_t state = 0;   ///< The game's hash after the step.
+  /// The counters that each player's input carried: see Peer.
+  std::array<std::uint32_t, kMaxPlayers> held{};
+  std::array<std::uint32_t, kMaxPlayers> command{};
+};
+
+/// Its player holds a counter that never falls, and gives commands that carry the numbers 1, 2, 3, ..., so
+/// that what is lost, made up or applied twice shows in what the games were given.
+class Peer {
+ public:
+  Peer(const SessionSettings& settings, const MatchOptions& options, Network& network, std::uint64_t seed);
+  Peer(const Peer&) = delete;
+
+  Session& session() const { return *session_; }
+  /// Makes a frame, with what the player does, unless `quiet`.
+  void frame(Time now, bool quiet);
+  /// When the next one is due.
+  Time next() const { return next_; }
+  void stallUntil(Time time) { next_ = std::max(next_, time); }
+  void pauseUntil(Time time) { pausedUntil_ = time; }
+  void crash() { crashed_ = true; }
+  bool running() const { return !crashed_ && session_->state() != SessionState::ended; }
+  bool crashed() const { return crashed_; }
+  void setDrift(std::int32_t ppm, Time zero) {
+    ppm_ = ppm;
+    zero_ = zero;
+  }
+  void plant(Planted planted, Tick tick) {
+    planted_ = planted;
+    plantedTick_ = tick;
+  }
+
+  /// The ticks that are certain, oldest first.
+  const std::vector<TickRecord>& records() const { return records_; }
+  Tick certain() const { return certain_; }
+  EndReason ended() const { return session_->endReason(); }
+  std::uint32_t commandsGiven() const { return commandsGiven_; }
+  std::uint32_t heldGiven() const { return heldGiven_; }
+  const std::vector<SessionEvent>& events() const { return events_; }
+  /// The state that the game has is not what a sequence of loads and steps may lead to.
+  bool misused() const { return misused_; }
+
+ private:
+  void save(std::uint32_t slot);
+  void load(std::uint32_t slot);
+  void step(const TickInputs& inputs);
+  void act();
+  Time local(Time now) const;
+
+  Seat seat_;
+  Network& network_;
+  Random random_;
+  std::unique_ptr<SimGame> game_;
+  std::unique_ptr<Session> session_;
+  Time sending_ = 0;
+  Time next_ = 0;
+  Time pausedUntil_ = 0;
+  Time zero_ = 0;
+  std::int32_t ppm_ = 0;
+  bool crashed_ = false;
+  bool misused_ = false;
+  Tick at_ = 0;
+  Tick certain_ = 0;
+  std::vector<Tick> slots_;
+  std::vector<TickRecord> records_;
+  std::uint32_t heldGiven_ = 0;
+  std::uint32_t commandsGiven_ = 0;
+  std::vector<SessionEvent> events_;
+  Planted planted_ = Planted::none;
+  Tick plantedTick_ = 0;
+};
+
+}  // namespace samestep::netsim

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The games that are played over the simulated network.
+#pragma once
+
+#include <samestep/game.h>
+
+#include <cstdint>
+#include <memory>
+
+namespace samestep::netsim {
+
+/// A game whose states the oracle compares.
+class SimGame {
+ public:
+  virtual ~SimGame() = default;
+  virtual void save(std::uint32_t slot) = 0;
+  virtual void load(std::uint32_t slot) = 0;
+  virtual void step(const TickInputs& inputs) = 0;
+  virtual std::uint64_t hash() = 0;
+  /// Changes one bit of the state: a planted fault.
+  virtual void flip() = 0;
+};
+
+/// One integer, mixed with every input.
+std::unique_ptr<SimGame> makeIntegerGame();
+
+}  // namespace samestep::netsim

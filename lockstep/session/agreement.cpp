@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// Who is dropped, and with which last input.
+#include <algorithm>
+
+#include "session/session_impl.h"
+
+namespace samestep {
+
+using namespace lockstep;
+
+namespace {
+
+// Microseconds. Peers begin one after another, so that one ballot at a time is under way.
+constexpr std::uint64_t kTurn = 400'000;
+constexpr std::uint64_t kBallotLasts = 1'000'000;
+constexpr std::uint64_t kAskEvery = 60'000;
+
+void put(PacketWriter& writer, const View& view) {
+  writer.u16(view.voters);
+  writer.u16(view.dropped);
+  for (Seat seat = 0; seat < kMaxPlayers; ++seat) {
+    if ((view.dropped & bit(seat)) != 0) writer.u32(view.end[seat]);
+  }
+}
+
+View getView(PacketReader& reader) {
+  View view;
+  view.voters = reader.u16();
+  view.dropped = reader.u16();
+  if ((view.voters & view.dropped) != 0 || view.voters == 0) reader.fail();
+  for (Seat seat = 0; seat < kMaxPlayers; ++seat) {
+    if ((view.dropped & bit(seat)) != 0) view.end[seat] = reader.u32();
+  }
+  return view;
+}
+
+}  // namespace
+
+Session::Impl::SeatMask Session::Impl::suspected() const {
+  SeatMask found = 0;
+  for (Seat seat = 0; seat < settings.players; ++seat) {
+    const bool silent = remote(seat) && now - links[seat].lastHeard > settings.dropAfter;
+    if (silent) found |= bit(seat);
+  }
+  return static_cast<SeatMask>(found & live());
+}
+
+/// Brings about a decision where one is needed.
+void Session::Impl::agree() {
+  const SeatMask gone = suspected();
+  const bool needed = gone != 0 || (change.voters() & ~live()) != 0 || change.underWay();
+  if (!needed) changeSince = 0;
+  if (!needed || (live() & bit(settings.localSeat)) == 0) return;
+  if (changeSince == 0) changeSince = now;
+  const std::uint64_t passed = now - changeSince;
+  if (passed > settings.endAfter && (gone | change.frozen()) != 0) return finish(EndReason::minority);
+  const SeatMask before = static_cast<SeatMask>(live() & ~gone & (bit(settings.localSeat) - 1));
+  const std::uint64_t turn = kTurn * static_cast<std::uint64_t>(count(before));
+  if (passed < turn) return;
+  if (proposedAt == 0 || now - proposedAt > kBallotLasts + turn) propose();
+  if (change.proposing() && now - askedAt >= kAskEvery) askVoters();
+}
+
+void Session::Impl::propose() {
+  const SeatMask gone = suspected();
+  const Seat self = settings.localSeat;
+  proposedAt = now;
+  change.propose(self, static_cast<SeatMask>(live() & ~gone), gone);
+  change.promise(change.ballot(), gone);
+  ViewChange::Promise promise{change.ballot(), change.acceptedBallot(), change.accepted(), {}};
+  for (Seat seat = 0; seat < settings.players; ++seat) promise.end[seat] = streams[seat].end();
+  change.promisedBy(self, promise);
+  askVoters();
+}
+
+/// Says again what the ballot asks of those who have not answered.
+void Session::Impl::askVoters() {
+  askedAt = now;
+  // Our own vote is cast when all have promised.
+  if (change.asking() && (change.missing() & bit(settings.localSeat)) != 0) {
+    if (!change.accept(change.ballot(), change.value())) return change.yield();
+    if (change.acceptedBy(settings.localSeat, change.ballot())) return decide(View(change.value()));
+  }
+  for (Seat seat = 0; seat < settings.players; ++seat) {
+    if (remote(seat) && (change.missing() & bit(seat)) != 0) askVoter(seat);
+  }
+}
+
+void Session::Impl::askVoter(Seat seat) {
+  std::uint8_t bytes[128];
+  PacketWriter writer(bytes);
+  header(writer, change.asking() ? Packet::accept : Packet::prepare);
+  writer.u32(change.ballot());
+  if (change.asking()) {
+    put(writer, change.value());
+  } else {
+    writer.u16(change.dropped());
+  }
+  send(seat, writer);
+}
+
+void Session::Impl::receivePrepare(Seat seat, PacketReader& reader) {
+  const std::uint32_t ballot = reader.u32();
+  const SeatMask dropped = reader.u16();
+  if (!reader.done() || (ballot & 15) != seat) return bad();
+  // Nobody helps to drop itself.
+  if ((dropped & bit(settings.localSeat)) != 0) return;
+  if (change.promise(ballot, dropped) && change.ballot() < ballot) {
+    change.yield();
+    proposedAt = now;
+  }
+  sendPromise(seat, ballot);
+}
+
+/// Answers with the highest ballot promised, which tells a lower one that it is late.
+void Session::Impl::sendPromise(Seat to, std::uint32_t ballot) {
+  std::uint8_t bytes[256];
+  PacketWriter writer(bytes);
+  header(writer, Packet::promise);
+  writer.u32(std::max(ballot, change.promised()));
+  writer.u32(change.acceptedBallot());
+  if (change.acceptedBallot() != 0) put(writer, change.accepted());
+  for (const InputStream& stream : streams) writer.u32(stream.end());
+  send(to, writer);
+}
+
+void Session::Impl::receivePromise(Seat seat, PacketReader& reader) {
+  ViewChange::Promise promise;
+  promise.ballot = reader.u32();
+  promise.acceptedBallot = reader.u32();
+  if (promise.acceptedBallot != 0) promise.accepted = getView(reader);
+  for (Seat other = 0; other < settings.players; ++other) {
+    promise.end[other] = reader.u32();
+    // Nobody can have so many.
+    if (promise.end[other] > certain + 8 * kMaxLead) reader.fail();
+  }
+  if (!reader.done()) return bad();
+  if (promise.ballot > change.promised()) {
+    change.promise(promise.ballot, 0);
+    return change.yield();
+  }
+  const bool before = change.asking();
+  change.promisedBy(seat, promise);
+  if (!before && change.asking()) askVoters();
+}
+
+void Session::Impl::receiveAccept(Seat seat, PacketReader& reader) {
+  const std::uint32_t ballot = reader.u32();
+  const View view = getView(reader);
+  if (!reader.done() || (ballot & 15) != seat) return bad();
+  if ((view.dropped & bit(settings.localSeat)) != 0 || !change.accept(ballot, view)) return;
+  if (change.ballot() < ballot) change.yield();
+  sendAccepted(seat, ballot);
+}
+
+void Session::Impl::sendAccepted(Seat to, std::uint32_t ballot) {
+  std::uint8_t bytes[16];
+  PacketWriter writer(bytes);
+  header(writer, Packet::accepted);
+  writer.u32(ballot);
+  send(to, writer);
+}
+
+void Session::Impl::receiveAccepted(Seat seat, PacketReader& reader) {
+  const std::uint32_t ballot = reader.u32();
+  if (!reader.done()) return bad();
+  if (change.acceptedBy(seat, ballot)) decide(View(change.value()));
+}
+
+void Session::Impl::sendCommit(Seat to, std::uint32_t number) {
+  if (number == 0 || number > viewNumber || number + kKeptViews <= viewNumber) return;
+  std::uint8_t bytes[128];
+  PacketWriter writer(bytes);
+  header(writer, Packet::commit);
+  writer.u32(number);
+  put(writer, views[number % kKeptViews]);
+  send(to, writer);
+}
+
+void Session::Impl::receiveCommit(PacketReader& reader) {
+  const std::uint32_t number = reader.u32();
+  const View view = getView(reader);
+  if (!reader.done()) return bad();
+  if (number == viewNumber + 1) decide(view);
+}
+
+void Session::Impl::decide(const View& view) {
+  ++viewNumber;
+  views[viewNumber % kKeptViews] = view;
+  const SeatMask known = static_cast<SeatMask>(change.voters() | view.voters);
+  change.begin(view.voters);
+  changeSince = 0;
+  proposedAt = 0;
+  for (Seat seat = 0; seat < settings.players; ++seat) {
+    if (remote(seat) && (known & bit(seat)) != 0) sendCommit(seat, viewNumber);
+  }
+  if ((view.dropped & bit(settings.localSeat)) != 0) return finish(EndReason::dropped);
+  for (Seat seat = 0; seat < settings.players && state == SessionState::running; ++seat) {
+    if ((view.dropped & bit(seat)) != 0) drop(seat, view.end[seat]);
+  }
+}
+
+void Session::Impl::drop(Seat seat, Tick end) {
+  if (ends[seat] <= end) return;
+  InputStream& stream = streams[seat];
+  if (stream.end() > end && certain > end) return finish(EndReason::diverged);
+  stream.truncate(end);
+  if (stream.end() < end) incomplete |= bit(seat);
+  seatEnds(seat, end, SessionEvent::Kind::dropped);
+}
+
+/// From `end` on the seat is absent.
+void Session::Impl::seatEnds(Seat seat, Tick end, SessionEvent::Kind kind) {
+  ends[seat] = end;
+  // Steps have been made with what it was predicted to hold.
+  if (end < current) wrong = std::min(wrong, end);
+  tell({kind, seat, 0, end});
+}
+
+}  // namespace samestep

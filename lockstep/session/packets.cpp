@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+// What is sent and received.
+#include <algorithm>
+
+#include "session/session_impl.h"
+
+namespace samestep {
+
+using namespace lockstep;
+
+namespace {
+
+/// No poll reads more than so many datagrams: whoever floods a peer shall not stop its frames.
+constexpr int kMostReceived = 512;
+constexpr std::uint64_t kHelloEvery = 100'000;
+constexpr std::uint64_t kCommitEvery = 50'000;
+constexpr std::uint64_t kWantEvery = 50'000;
+constexpr std::uint8_t kPaused = 1;
+
+/// The tick nearest to `near` with these low bits.
+Tick unwrap(std::uint16_t low, Tick near) {
+  const std::uint16_t step = static_cast<std::uint16_t>(low - near);
+  return near + static_cast<Tick>(static_cast<std::int32_t>(static_cast<std::int16_t>(step)));
+}
+
+}  // namespace
+
+void Session::Impl::poll(std::uint64_t time) {
+  const std::uint64_t gap = std::max(now, time) - now;
+  now += gap;
+  // Whoever was not looking cannot say that the others were silent.
+  if (gap > settings.interruptedAfter) {
+    for (Link& link : links) link.lastHeard += gap;
+  }
+  if (state == SessionState::ended) return;
+  std::uint8_t bytes[kMaxDatagram];
+  Address from = 0;
+  for (int i = 0; i < kMostReceived && state != SessionState::ended; ++i) {
+    const std::uint32_t size = transport.receive(from, std::span<std::uint8_t>(bytes), transport.data);
+    if (size == 0) break;
+    receive(from, {bytes, size});
+  }
+  if (state == SessionState::ended) return;
+  confirm();
+  watchLinks();
+  if (state == SessionState::running) {
+    sendWants();
+    agree();
+    finishLeaving();
+  }
+}
+
+/// Ends the session of a player that has left once all have its last input and need its vote no more.
+void Session::Impl::finishLeaving() {
+  if ((live() & bit(settings.localSeat)) != 0) return;
+  if (endsAt == 0) endsAt = now + settings.dropAfter;
+  bool known = (change.voters() & bit(settings.localSeat)) == 0;
+  for (Seat seat = 0; seat < settings.players; ++seat) {
+    if (remote(seat) && ends[seat] == kNever) known &= links[seat].acked >= own().end();
+  }
+  if (known || live() == 0 || now >= endsAt) finish(EndReason::left);
+}
+
+void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
+  PacketReader reader(bytes);
+  const std::uint8_t first = reader.u8();
+  const Seat seat = reader.u8();
+  const std::uint16_t match = reader.u16();
+  const std::uint8_t view = reader.u8();
+  const auto type = static_cast<Packet>(first & 15);
+  if (!reader.good() || type > Packet::hashes || seat >= settings.players || !remote(seat) ||
+      settings.addresses[seat] != from || match != static_cast<std::uint16_t>(settings.match)) {
+    return bad();
+  }
+  Link& link = links[seat];
+  if (type == Packet::hello) return receiveHello(seat, reader);
+  if (type == Packet::refuse) {
+    const std::uint8_t why = reader.u8();
+    if (state != SessionState::connecting || !reader.done()) return bad();
+    tell({SessionEvent::Kind::refused, seat, why});
+    return finish(EndReason::refused);
+  }
+  if (!link.heard || state != SessionState::running) return;
+  const auto behind = static_cast<std::int8_t>(static_cast<std::uint8_t>(viewNumber) - view);
+  if (behind > 0 && now - link.lastCommit >= kCommitEvery) {
+    link.lastCommit = now;
+    sendCommit(seat, viewNumber - static_cast<std::uint32_t>(behind) + 1);
+  }
+  if (type == Packet::commit) return receiveCommit(reader);
+  // What the seat said before it was dropped has its place in the decision.
+  if (ends[seat] != kNever && (change.voters() & bit(seat)) == 0) return;
+  link.lastHeard = now;
+  // Ballots of another decision mean nothing here.
+  const bool decision = type >= Packet::prepare && type <= Packet::accepted;
+  if (decision && behind != 0) return;
+  receiveFrom(seat, type, first >> 4, reader);
+}
+
+void Session::Impl::receiveFrom(Seat seat, Packet type, std::uint8_t flags, PacketReader& reader) {
+  switch (type) {
+    case Packet::inputs:
+      return receiveInputs(seat, flags, reader);
+    case Packet::prepare:
+      return receivePrepare(seat, reader);
+    case Packet::promise:
+      return receivePromise(seat, reader);
+    case Packet::accept:
+      return receiveAccept(seat, reader);
+    case Packet::accepted:
+      return receiveAccepted(seat, reader);
+    case Packet::want:
+      return receiveWant(seat, reader);
+    case Packet::backfill:
+      return receiveBackfill(reader);
+    case Packet::hashes:
+      return receiveHashes(seat, reader);
+    default:
+      return bad();
+  }
+}
+
+void Session::Impl::header(PacketWriter& writer, Packet type, std::uint8_t flags) const {
+  writer.u8(static_cast<std::uint8_t>(static_cast<std::uint8_t>(type) | flags << 4));
+  writer.u8(settings.localSeat);
+  writer.u16(static_cast<std::uint16_t>(settings.match));
+  writer.u8(static_cast<std::uint8_t>(viewNumber));
+}
+
+void Session::Impl::send(Seat seat, const PacketWriter& writer) {
+  links[seat].lastSent = now;
+  ++stats.sentPackets;
+  stats.sentBytes += writer.size();
+  transport.send(settings.addresses[seat], writer.written(), transport.data);
+}
+
+void Session::Impl::sendHello(Seat seat) {
+  std::uint8_t bytes[64];
+  PacketWriter writer(bytes);
+  header(writer, Packet::hello);
+  writer.u8(links[seat].heard ? 1 : 0);
+  writer.u16(kProtocol);
+  writer.u32(settings.match);
+  writer.u8(settings.players);
+  writer.u8(settings.maxHeldBytes);
+  writer.u8(settings.maxCommandBytes);
+  writer.u16(settings.hashInterval);
+  writer.u32(settings.revision);
+  writer.u64(settings.fingerprint);
+  writer.u64(settings.content);
+  send(seat, writer);
+}
+
+/// The first thing in which a hello differs from ours.
+Mismatch Session::Impl::mismatch(PacketReader& reader) const {
+  if (reader.u16() != kProtocol || reader.u32() != settings.match) return Mismatch::protocol;
+  if (reader.u8() != settings.players) return Mismatch::players;
+  const bool sameBounds = reader.u8() == settings.maxHeldBytes && reader.u8() == settings.maxCommandBytes;
+  if (!sameBounds || reader.u16() != settings.hashInterval) return Mismatch::settings;
+  if (reader.u32() != settings.revision) return Mismatch::revision;
+  if (reader.u64() != settings.fingerprint) return Mismatch::fingerprint;
+  if (reader.u64() != settings.content) return Mismatch::content;
+  return reader.done() ? Mismatch::none : Mismatch::protocol;
+}
+
+void Session::Impl::receiveHello(Seat seat, PacketReader& reader) {
+  const bool hearsUs = reader.u8() != 0;
+  const Mismatch found = mismatch(reader);
+  if (!reader.good()) return bad();
+  if (found != Mismatch::none) {
+    if (state != SessionState::connecting) return bad();
+    std::uint8_t bytes[16];
+    PacketWriter writer(bytes);
+    header(writer, Packet::refuse);
+    writer.u8(static_cast<std::uint8_t>(found));
+    send(seat, writer);
+    tell({SessionEvent::Kind::refused, seat, static_cast<std::uint8_t>(found)});
+    return finish(EndReason::refused);
+  }
+  links[seat].heard = true;
+  links[seat].hearsUs |= hearsUs;
+  if (!hearsUs) sendHello(seat);
+  if (state != SessionState::connecting) return;
+  for (Seat other = 0; other < settings.players; ++other) {
+    if (remote(other) && !links[other].heard) return;
+  }
+  state = SessionState::running;
+  for (Link& link : links) link.lastHeard = now;
+  tell({SessionEvent::Kind::started});
+}
+
+void Session::Impl::sendInputs(Seat seat) {
+  const Link& link = links[seat];
+  if (ends[seat] != kNever && (change.voters() & bit(seat)) == 0) return;
+  std::uint8_t bytes[kMaxDatagram];
+  PacketWriter writer(bytes);
+  header(writer, Packet::inputs, paused ? kPaused : 0);
+  writer.u16(static_cast<std::uint16_t>(link.acked));
+  writer.u16(static_cast<std::uint16_t>(streams[seat].end()));
+  writer.u8(static_cast<std::uint8_t>(current - link.acked));
+  writer.u8(static_cast<std::uint8_t>(std::clamp(link.lagHere / 128, -127, 127)));
+  encodeEntries(writer, own(), link.acked, own().end());
+  send(seat, writer);
+}
+
+void Session::Impl::receiveInputs(Seat seat, std::uint8_t flags, PacketReader& reader) {
+  Link& link = links[seat];
+  const Tick base = unwrap(reader.u16(), streams[seat].end());
+  const Tick acked = unwrap(reader.u16(), link.acked);
+  const std::uint8_t ahead = reader.u8();
+  const auto lag = static_cast<std::int8_t>(reader.u8());
+  if (!reader.good() || base > streams[seat].end() + InputStream::kCapacity || acked > own().end())
+    return bad();
+  link.acked = std::max(link.acked, acked);
+  const Tick tick = base + static_cast<Tick>(static_cast<std::int32_t>(static_cast<std::int8_t>(ahead)));
+  // Late packets have old news.
+  if (tick + kMaxLead >= link.tick && tick <= certain + 4 * kMaxLead && tick >= link.tick) {
+    link.tick = tick;
+    link.lagThere += (lag * 128 - link.lagThere) / 4;
+    if (link.paused != ((flags & kPaused) != 0)) {
+      link.paused = !link.paused;
+      tell({link.paused ? SessionEvent::Kind::paused : SessionEvent::Kind::unpaused, seat});
+    }
+  }
+  if ((change.frozen() & bit(seat)) != 0) return;
+  const Tick limit = std::min(ends[seat], certain + 2 * kMaxLead);
+  if (!decodeEntries(reader, streams[seat], base, limit, wrong)) bad();
+  takeControls(seat);
+}
+
+/// Looks whether the last input of a seat is its very last.
+void Session::Impl::takeControls(Seat seat) {
+  InputStream& stream = streams[seat];
+  if (ends[seat] != kNever || !stream.has(stream.end() - 1)) return;
+  // Inputs after a last one are no inputs.
+  for (Tick tick = controlsUpTo[seat]; tick < stream.end(); ++tick) {
+    if (!stream.has(tick) || stream.at(tick).control != Control::leave) continue;
+    stream.truncate(tick + 1);
+    seatEnds(seat, tick + 1, SessionEvent::Kind::left);
+    return;
+  }
+  controlsUpTo[seat] = stream.end();
+}
+
+void Session::Impl::sendHashes() {
+  std::uint8_t bytes[128];
+  PacketWriter writer(bytes);
+  header(writer, Packet::hashes);
+  writer.u32(hashesUpTo);
+  // The one before goes with it, in case it was lost.
+  for (std::uint32_t back = 0; back < 4; ++back) {
+    const Tick tick = hashesUpTo - back * settings.hashInterval;
+    const KeptHash& kept = hashes[settings.localSeat].of(tick, settings.hashInterval);
+    if (kept.tick != tick) break;
+    writer.u64(kept.hash);
+  }
+  for (Seat seat = 0; seat < settings.players; ++seat) {
+    if (remote(seat) && ends[seat] == kNever) send(seat, writer);
+  }
+}
+
+void Session::Impl::receiveHashes(Seat seat, PacketReader& reader) {
+  const Tick newest = reader.u32();
+  if (settings.hashInterval == 0 || newest % settings.hashInterval != 0) return bad();
+  for (std::uint32_t back = 0; reader.good() && reader.left() > 0 && back < 4; ++back) {
+    const std::uint64_t hash = reader.u64();
+    const Tick tick = newest - back * settings.hashInterval;
+    if (!reader.good() || tick > newest || tick > certain + 4 * kMaxLead) return bad();
+    KeptHash& kept = hashes[seat].of(tick, settings.hashInterval);
+    if (kept.tick != kNever && kept.tick >= tick) continue;
+    kept = {tick, hash};
+    compareHash(seat, tick);
+  }
+  if (!reader.done()) bad();
+}
+
+/// Asks for the inputs of dropped seats that the others have.
+void Session::Impl::sendWants() {
+  for (Seat gone = 0; gone < settings.players; ++gone) {
+    if (streams[gone].end() >= ends[gone]) incomplete &= static_cast<SeatMask>(~bit(gone));
+  }
+  if (incomplete == 0 || now - wantedAt < kWantEvery) return;
+  wantedAt = now;
+  for (Seat gone = 0; gone < settings.players; ++gone) {
+    if ((incomplete & bit(gone)) == 0) continue;
+    std::uint8_t bytes[16];
+    PacketWriter writer(bytes);
+    header(writer, Packet::want);
+    writer.u8(gone);
+    writer.u32(streams[gone].end());
+    for (Seat seat = 0; seat < settings.players; ++seat) {
+      if (remote(seat) && ends[seat] == kNever) send(seat, writer);
+    }
+  }
+}
+
+void Session::Impl::receiveWant(Seat seat, PacketReader& reader) {
+  const Seat gone = reader.u8();
+  const Tick from = reader.u32();
+  if (!reader.done() || gone >= settings.players) return bad();
+  const InputStream& stream = streams[gone];
+  if (ends[gone] == kNever || !stream.has(from)) return;
+  std::uint8_t bytes[kMaxDatagram];
+  PacketWriter writer(bytes);
+  header(writer, Packet::backfill);
+  writer.u8(gone);
+  writer.u32(from);
+  encodeEntries(writer, stream, from, stream.end());
+  send(seat, writer);
+}
+
+void Session::Impl::receiveBackfill(PacketReader& reader) {
+  const Seat gone = reader.u8();
+  const Tick base = reader.u32();
+  if (!reader.good() || gone >= settings.players) return bad();
+  if ((incomplete & bit(gone)) == 0) return;
+  if (!decodeEntries(reader, streams[gone], base, ends[gone], wrong)) bad();
+}
+
+/// Says again what may have been lost, and notices who is silent.
+void Session::Impl::watchLinks() {
+  for (Seat seat = 0; seat < settings.players; ++seat) {
+    Link& link = links[seat];
+    if (!remote(seat)) continue;
+    if (state == SessionState::connecting) {
+      if (link.lastSent == 0 || now - link.lastSent >= kHelloEvery) sendHello(seat);
+      continue;
+    }
+    if (now - link.lastSent >= settings.resendAfter) sendInputs(seat);
+    if (ends[seat] != kNever) continue;
+    const bool silent = now - link.lastHeard >= settings.interruptedAfter;
+    if (silent == link.interrupted) continue;
+    link.interrupted = silent;
+    tell({silent ? SessionEvent::Kind::interrupted : SessionEvent::Kind::resumed, seat});
+  }
+}
+
+}  // namespace samestep

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// What the parts of a Session share. Its subjects: session.cpp (settings and questions), frames.cpp (steps,
+// saves and rollbacks), packets.cpp (what is sent and received), agreement.cpp (who is dropped).
+#pragma once
+
+#include <samestep/session.h>
+
+#include <array>
+#include <vector>
+
+#include "session/input_stream.h"
+#include "session/view_change.h"
+
+namespace samestep {
+
+namespace lockstep {
+
+/// The first byte of every packet, in its low four bits.
+enum class Packet : std::uint8_t {
+  hello = 0,    ///< What must be the same everywhere, and whom the sender has heard.
+  refuse = 1,   ///< Why the sender will not play with the receiver.
+  inputs = 2,   ///< Inputs the receiver lacks, and how many of its own have come.
+  prepare = 3,  ///< Who shall be dropped? See ViewChange.
+  promise = 4,
+  accept = 5,
+  accepted = 6,
+  commit = 7,    ///< A decision.
+  want = 8,      ///< Asks for inputs of a dropped player.
+  backfill = 9,  ///< Answers with them.
+  hashes = 10,   ///< Of certain states.
+};
+inline constexpr std::uint32_t kProtocol = 1;
+inline constexpr Tick kNever = 0xffffffffu;
+/// No input is made for a tick further ahead of the last certain one.
+inline constexpr Tick kMaxLead = kMaxWindow + kMaxInputDelay;
+static_assert(8 * kMaxLead <= InputStream::kCapacity, "a stream keeps what any peer may still ask for");
+/// What is remembered of decisions and of hashes.
+inline constexpr std::uint32_t kKeptViews = 2 * kMaxPlayers;
+inline constexpr std::uint32_t kKeptHashes = 16;
+inline constexpr std::uint32_t kKeptEvents = 64;
+inline constexpr std::uint32_t kKeptCommands = 32;
+inline constexpr std::uint32_t kSlots = kMaxWindow + 2;
+
+/// What is known of another peer.
+struct Link {
+  bool heard = false;    ///< Its hello came and is as ours.
+  bool hearsUs = false;  ///< It has said that ours came.
+  bool paused = false;
+  bool interrupted = false;
+  std::uint64_t lastHeard = 0;
+  std::uint64_t lastSent = 0;
+  std::uint64_t lastCommit = 0;
+  /// Of our inputs: the tick after the last one that it has.
+  Tick acked = 0;
+  /// Its newest known step.
+  Tick tick = 0;
+  /// By how many ticks it is behind here, and we there, in 256ths, smoothed.
+  std::int32_t lagHere = 0;
+  std::int32_t lagThere = 0;
+};
+
+struct KeptHash {
+  Tick tick = kNever;
+  std::uint64_t hash = 0;
+};
+
+/// Hashes after certain steps, the newest kKeptHashes.
+struct HashLog {
+  std::array<KeptHash, kKeptHashes> kept;
+  KeptHash& of(Tick tick, std::uint32_t interval) { return kept[tick / interval % kKeptHashes]; }
+};
+
+}  // namespace lockstep
+
+struct Session::Impl {
+  using Link = lockstep::Link;
+  using SeatMask = lockstep::SeatMask;
+  using PacketReader = lockstep::PacketReader;
+  using PacketWriter = lockstep::PacketWriter;
+
+  Impl(const SessionSettings& initial, const Game& functions, const Transport& datagrams);
+
+  // Frames.
+  Frame frame(std::span<const std::uint8_t> held);
+  void produce(std::span<const std::uint8_t> held);
+  void appendOwn(std::span<const std::uint8_t> held);
+  void confirm();
+  bool complete(Tick tick) const;
+  void rollBack();
+  bool mayStep() const;
+  void prepareStep();
+  void step(Tick tick);
+  void save(Tick tick);
+  std::uint32_t slotOf(Tick atMost) const;
+  std::uint32_t freeSlot() const;
+  void showAhead();
+  void takeBackShown();
+  void hashState();
+  void publishHashes();
+  void compareHash(Seat seat, Tick tick);
+  void balance();
+
+  // Packets.
+  void poll(std::uint64_t time);
+  void receive(Address from, std::span<const std::uint8_t> bytes);
+  void receiveFrom(Seat seat, lockstep::Packet type, std::uint8_t flags, PacketReader& reader);
+  void receiveHello(Seat seat, PacketReader& reader);
+  void receiveInputs(Seat seat, std::uint8_t flags, PacketReader& reader);
+  void receiveHashes(Seat seat, PacketReader& reader);
+  void takeControls(Seat seat);
+  void receiveWant(Seat seat, PacketReader& reader);
+  void receiveBackfill(PacketReader& reader);
+  Mismatch mismatch(PacketReader& reader) const;
+  void sendHello(Seat seat);
+  void sendInputs(Seat seat);
+  void sendHashes();
+  void sendWants();
+  void send(Seat seat, const PacketWriter& writer);
+  void header(PacketWriter& writer, lockstep::Packet type, std::uint8_t flags = 0) const;
+  void watchLinks();
+  void finishLeaving();
+  void bad() { ++stats.badPackets; }
+
+  // Agreement.
+  void agree();
+  void propose();
+  void askVoters();
+  void askVoter(Seat seat);
+  void receivePrepare(Seat seat, PacketReader& reader);
+  void receivePromise(Seat seat, PacketReader& reader);
+  void receiveAccept(Seat seat, PacketReader& reader);
+  void receiveAccepted(Seat seat, PacketReader& reader);
+  void receiveCommit(PacketReader& reader);
+  void sendPromise(Seat to, std::uint32_t ballot);
+  void sendAccepted(Seat to, std::uint32_t ballot);
+  void sendCommit(Seat to, std::uint32_t number);
+  void decide(const lockstep::View& view);
+  void drop(Seat seat, Tick end);
+  SeatMask suspected() const;
+
+  void seatEnds(Seat seat, Tick end, SessionEvent::Kind kind);
+  void finish(EndReason why);
+  void tell(const SessionEvent& event);
+  /// Who has not ended as far as known.
+  SeatMask live() const;
+  bool remote(Seat seat) const { return seat != settings.localSeat; }
+  lockstep::InputStream& own() { return streams[settings.localSeat]; }
+
+  SessionSettings settings;
+  Game game;
+  Transport transport;
+  std::uint64_t now = 0;
+  SessionState state = SessionState::connecting;
+  EndReason reason = EndReason::none;
+  bool paused = false;
+  bool leaving = false;
+  std::uint64_t endsAt = 0;  ///< When a leaver stops answering; 0: is not leaving.
+
+  std::vector<lockstep::InputStream> streams;
+  std::array<Link, kMaxPlayers> links{};
+  /// The tick after each seat's last input, as far as known.
+  std::array<Tick, kMaxPlayers> ends{};
+  /// Of each seat: the tick after the last input that was looked at for a control.
+  std::array<Tick, kMaxPlayers> controlsUpTo{};
+  /// Dropped seats whose last inputs are still to come from others.
+  SeatMask incomplete = 0;
+
+  Tick current = 0;
+  Tick certain = 0;
+  /// The first step that was made with a wrong input; kNever: none.
+  Tick wrong = lockstep::kNever;
+  bool shown = false;  ///< Steps ahead of `current` were made to be shown.
+  std::array<Tick, lockstep::kSlots> saves;
+
+  std::array<std::vector<std::uint8_t>, lockstep::kKeptCommands> commands;
+  std::uint32_t commandsTaken = 0;
+  std::uint32_t commandsQueued = 0;
+
+  std::uint32_t viewNumber = 0;
+  lockstep::ViewChange change;
+  std::array<lockstep::View, lockstep::kKeptViews> views;
+  std::uint64_t changeSince = 0;  ///< When a change became needed; 0: is not.
+  std::uint64_t proposedAt = 0;
+  std::uint64_t askedAt = 0;
+  std::uint64_t wantedAt = 0;
+
+  lockstep::HashLog ownHashes;                        ///< Also of steps that are not certain.
+  std::array<lockstep::HashLog, kMaxPlayers> hashes;  ///< As told by each seat; ours when certain.
+  Tick hashesUpTo = 0;
+  SeatMask desynced = 0;
+
+  std::array<SessionEvent, lockstep::kKeptEvents> events;
+  std::uint64_t eventsTold = 0;
+  std::uint64_t eventsTaken = 0;
+  SessionStats stats;
+};
+
+}  // namespace samestep

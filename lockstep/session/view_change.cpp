@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "session/view_change.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace samestep::lockstep {
+
+int count(SeatMask seats) { return std::popcount(seats); }
+
+bool quorum(SeatMask some, SeatMask voters) {
+  const SeatMask lowest = static_cast<SeatMask>(voters & -voters);
+  // The lowest seat has half a vote more.
+  return 2 * (2 * count(some & voters) + ((some & lowest) != 0 ? 1 : 0)) > 2 * count(voters) + 1;
+}
+
+void ViewChange::begin(SeatMask voters) {
+  *this = ViewChange();
+  voters_ = voters;
+}
+
+bool ViewChange::promise(std::uint32_t ballot, SeatMask dropped) {
+  if (ballot < promised_) return false;
+  promised_ = ballot;
+  // Frozen is who was in any ballot: the proposer of that one may still be heard.
+  frozen_ |= dropped;
+  return true;
+}
+
+bool ViewChange::accept(std::uint32_t ballot, const View& view) {
+  if (ballot < promised_) return false;
+  promised_ = ballot;
+  frozen_ |= view.dropped;
+  acceptedBallot_ = ballot;
+  accepted_ = view;
+  return true;
+}
+
+void ViewChange::propose(Seat self, SeatMask stay, SeatMask dropped) {
+  ballot_ = ((std::max(promised_, ballot_) >> 4) + 1) << 4 | self;
+  stay_ = stay;
+  dropped_ = dropped;
+  promises_ = 0;
+  accepts_ = 0;
+  best_ = 0;
+  value_ = {stay, dropped, {}};
+}
+
+SeatMask ViewChange::missing() const {
+  // A voter that has left need not answer, but may.
+  const SeatMask asked = static_cast<SeatMask>((voters_ | stay_) & ~dropped_);
+  return static_cast<SeatMask>(asking() ? voters_ & asked & ~accepts_ : asked & ~promises_);
+}
+
+void ViewChange::promisedBy(Seat seat, const Promise& promise) {
+  if (promise.ballot != ballot_ || ballot_ == 0 || (missing() & bit(seat)) == 0 || asking()) {
+    return;
+  }
+  promises_ |= bit(seat);
+  if (promise.acceptedBallot > best_) {
+    // It may be decided already.
+    best_ = promise.acceptedBallot;
+    value_ = promise.accepted;
+  } else if (best_ == 0) {
+    for (Seat i = 0; i < kMaxPlayers; ++i) {
+      if ((dropped_ & bit(i)) != 0) value_.end[i] = std::max(value_.end[i], promise.end[i]);
+    }
+  }
+}
+
+bool ViewChange::acceptedBy(Seat seat, std::uint32_t ballot) {
+  if (!asking() || ballot != ballot_) return false;
+  accepts_ |= bit(seat);
+  return quorum(accepts_, voters_);
+}
+
+}  // namespace samestep::lockstep

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "netsim/match.h"
+
+#include <bit>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace samestep::netsim {
+namespace {
+
+MatchOptions options(std::uint64_t seed, std::uint32_t faults, Tick ticks = 600) {
+  MatchOptions options;
+  options.seed = seed;
+  options.peers = static_cast<std::uint32_t>(2 + seed % 15);
+  options.faults = faults;
+  options.ticks = ticks;
+  return options;
+}
+
+std::string all(const MatchReport& report) {
+  return std::accumulate(report.violations.begin(), report.violations.end(), std::string(),
+                         [](const std::string& text, const std::string& next) { return text + next + "\n"; });
+}
+
+class FaultTest : public ::testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(FaultTest, LeavesPeersTheSame) {
+  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+    EXPECT_EQ(all(runMatch(options(seed, GetParam()))), "") << "seed " << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Netsim, FaultTest,
+                         ::testing::Values(0, kLoss, kPartition, kStall, kCrash, kLeave, kChange, kDrift,
+                                           kHostile, kAsymmetric, kAllFaults),
+                         [](const auto& fault) { return faultNames(fault.param); });
+
+TEST(NetsimTest, AMatchIsTheSameEachTime) {
+  const MatchReport first = runMatch(options(7, kAllFaults));
+  const MatchReport again = runMatch(options(7, kAllFaults));
+
+  EXPECT_EQ(first.trace, again.trace);
+  EXPECT_EQ(first.datagrams, again.datagrams);
+  EXPECT_NE(first.trace, runMatch(options(22, kAllFaults)).trace);
+}
+
+TEST(NetsimTest, TheSeedsCoverRollbacksDropsAndLeaving) {
+  MatchReport sum;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const MatchReport report = runMatch(options(seed, kAllFaults, 300));
+    sum.rollbacks += report.rollbacks;
+    sum.deepest = std::max(sum.deepest, report.deepest);
+    sum.dropped += report.dropped;
+    sum.left += report.left;
+    sum.waited += report.waited;
+  }
+  EXPECT_GT(sum.rollbacks, 1000u);
+  EXPECT_GE(sum.deepest, 8u);
+  EXPECT_GT(sum.dropped, 5u);
+  EXPECT_GT(sum.left, 5u);
+  EXPECT_GT(sum.waited, 100u);
+}
+
+// Negative control: an oracle that cannot fail proves nothing.
+TEST(NetsimTest, APlantedFaultIsCaughtByTheOracleAndByEveryPeer) {
+  for (const Planted planted : {Planted::flip, Planted::deaf}) {
+    for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+      MatchOptions broken = options(seed, kLoss | kDrift);
+      broken.planted = planted;
+
+      const MatchReport report = runMatch(broken);
+
+      EXPECT_THAT(report.violations, ::testing::Contains(::testing::HasSubstr("states of tick"))) << seed;
+      EXPECT_EQ(report.desynced, (1u << broken.peers) - 1) << seed << ": " << all(report);
+    }
+  }
+}
+
+TEST(NetsimTest, AGameThatComesBackWronglyFromALoadIsCaught) {
+  int caught = 0;
+  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+    MatchOptions broken = options(seed, kLoss);
+    broken.planted = Planted::forgets;
+    caught += runMatch(broken).violations.empty() ? 0 : 1;
+  }
+  // Peers in pure lockstep load nothing, and a later load from before mends the state.
+  EXPECT_GE(caught, 5);
+}
+
+TEST(NetsimTest, AFailureIsShrunkToAMatchThatStillFails) {
+  MatchOptions broken = options(12, kAllFaults, 1200);
+  broken.planted = Planted::flip;
+  ASSERT_FALSE(runMatch(broken).violations.empty());
+
+  const MatchOptions small = shrink(broken);
+
+  EXPECT_FALSE(runMatch(small).violations.empty());
+  EXPECT_LT(small.ticks, broken.ticks);
+  EXPECT_LT(small.peers, broken.peers);
+  EXPECT_LT(std::popcount(small.faults), std::popcount(broken.faults));
+}
+
+}  // namespace
+}  // namespace samestep::netsim
