@@ -116,12 +116,14 @@ void Match::plan() {
   const auto seat = [&] { return static_cast<Seat>(random_.below(options_.peers)); };
   // Seat 0 breaks ties, and stays.
   const auto mayGo = [&] { return static_cast<Seat>(random_.within(1, options_.peers - 1)); };
-  std::uint32_t spare = (options_.peers - 1) / 2;
+  const bool leaves = has(kLeave) && random_.perMille(500);
+  if (leaves) plan_.push_back({when(), Kind::leave, seat(), 0, 0});
+  // How many of those who vote then may vanish.
+  std::uint32_t spare = (options_.peers - (leaves ? 2 : 1)) / 2;
   if (has(kCrash) && spare > 0 && random_.perMille(600)) {
     --spare;
     plan_.push_back({when(), Kind::crash, mayGo(), 0, 0});
   }
-  if (has(kLeave) && random_.perMille(500)) plan_.push_back({when(), Kind::leave, seat(), 0, 0});
   for (std::uint32_t i = 0; has(kStall) && i < 2; ++i) {
     // Now and then long enough to be dropped.
     const bool dropped = spare > 0 && random_.perMille(200);

@@ -77,7 +77,8 @@ void Session::Impl::propose() {
 void Session::Impl::askVoters() {
   askedAt = now;
   // Our own vote is cast when all have promised.
-  if (change.asking() && (change.missing() & bit(settings.localSeat)) != 0) {
+  const bool votes = change.asking() && (change.missing() & bit(settings.localSeat)) != 0;
+  if (votes && haveAll(change.value())) {
     if (!change.accept(change.ballot(), change.value())) return change.yield();
     if (change.acceptedBy(settings.localSeat, change.ballot())) return decide(View(change.value()));
   }
@@ -148,7 +149,9 @@ void Session::Impl::receiveAccept(Seat seat, PacketReader& reader) {
   const std::uint32_t ballot = reader.u32();
   const View view = getView(reader);
   if (!reader.done() || (ballot & 15) != seat) return bad();
-  if ((view.dropped & bit(settings.localSeat)) != 0 || !change.accept(ballot, view)) return;
+  if ((view.dropped & bit(settings.localSeat)) != 0 || ballot < change.promised()) return;
+  // The proposer asks again.
+  if (!haveAll(view) || !change.accept(ballot, view)) return;
   if (change.ballot() < ballot) change.yield();
   sendAccepted(seat, ballot);
 }
@@ -184,6 +187,18 @@ void Session::Impl::receiveCommit(PacketReader& reader) {
   if (number == viewNumber + 1) decide(view);
 }
 
+/// Whether all inputs of those to be dropped are here; asks the others for what is not.
+bool Session::Impl::haveAll(const View& view) {
+  bool all = true;
+  for (Seat seat = 0; seat < settings.players; ++seat) {
+    if ((view.dropped & bit(seat)) == 0 || streams[seat].end() >= view.end[seat]) continue;
+    all = false;
+    incomplete |= bit(seat);
+    backfillTo[seat] = view.end[seat];
+  }
+  return all;
+}
+
 void Session::Impl::decide(const View& view) {
   ++viewNumber;
   views[viewNumber % kKeptViews] = view;
@@ -206,6 +221,7 @@ void Session::Impl::drop(Seat seat, Tick end) {
   if (stream.end() > end && certain > end) return finish(EndReason::diverged);
   stream.truncate(end);
   if (stream.end() < end) incomplete |= bit(seat);
+  backfillTo[seat] = end;
   seatEnds(seat, end, SessionEvent::Kind::dropped);
 }
 

@@ -49,7 +49,8 @@ void Session::Impl::appendOwn(std::span<const std::uint8_t> held) {
   if (commandsTaken != commandsQueued) entry.commands = commands[commandsTaken++ % kKeptCommands];
   const bool last = leaving && commandsTaken == commandsQueued;
   if (last) entry.control = Control::leave;
-  if (!own().append(entry)) wrong = std::min(wrong, own().end() - 1);
+  // No step was made without it: what was shown ahead with another one has been taken back.
+  own().append(entry);
   if (last) seatEnds(settings.localSeat, own().end(), SessionEvent::Kind::left);
 }
 

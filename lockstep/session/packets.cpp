@@ -53,7 +53,7 @@ void Session::Impl::poll(std::uint64_t time) {
 /// Ends the session of a player that has left once all have its last input and need its vote no more.
 void Session::Impl::finishLeaving() {
   if ((live() & bit(settings.localSeat)) != 0) return;
-  if (endsAt == 0) endsAt = now + settings.dropAfter;
+  if (endsAt == 0) endsAt = now + settings.endAfter;
   bool known = (change.voters() & bit(settings.localSeat)) == 0;
   for (Seat seat = 0; seat < settings.players; ++seat) {
     if (remote(seat) && ends[seat] == kNever) known &= links[seat].acked >= own().end();
@@ -276,7 +276,7 @@ void Session::Impl::receiveHashes(Seat seat, PacketReader& reader) {
 /// Asks for the inputs of dropped seats that the others have.
 void Session::Impl::sendWants() {
   for (Seat gone = 0; gone < settings.players; ++gone) {
-    if (streams[gone].end() >= ends[gone]) incomplete &= static_cast<SeatMask>(~bit(gone));
+    if (streams[gone].end() >= backfillTo[gone]) incomplete &= static_cast<SeatMask>(~bit(gone));
   }
   if (incomplete == 0 || now - wantedAt < kWantEvery) return;
   wantedAt = now;
@@ -288,7 +288,7 @@ void Session::Impl::sendWants() {
     writer.u8(gone);
     writer.u32(streams[gone].end());
     for (Seat seat = 0; seat < settings.players; ++seat) {
-      if (remote(seat) && ends[seat] == kNever) send(seat, writer);
+      if (remote(seat) && seat != gone && (change.voters() & bit(seat)) != 0) send(seat, writer);
     }
   }
 }
@@ -298,7 +298,8 @@ void Session::Impl::receiveWant(Seat seat, PacketReader& reader) {
   const Tick from = reader.u32();
   if (!reader.done() || gone >= settings.players) return bad();
   const InputStream& stream = streams[gone];
-  if (ends[gone] == kNever || !stream.has(from)) return;
+  const bool stands = ends[gone] != kNever || (change.frozen() & bit(gone)) != 0;
+  if (!stands || !stream.has(from)) return;
   std::uint8_t bytes[kMaxDatagram];
   PacketWriter writer(bytes);
   header(writer, Packet::backfill);
@@ -313,7 +314,7 @@ void Session::Impl::receiveBackfill(PacketReader& reader) {
   const Tick base = reader.u32();
   if (!reader.good() || gone >= settings.players) return bad();
   if ((incomplete & bit(gone)) == 0) return;
-  if (!decodeEntries(reader, streams[gone], base, ends[gone], wrong)) bad();
+  if (!decodeEntries(reader, streams[gone], base, std::min(ends[gone], backfillTo[gone]), wrong)) bad();
 }
 
 /// Says again what may have been lost, and notices who is silent.

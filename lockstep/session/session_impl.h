@@ -134,6 +134,7 @@ struct Session::Impl {
   void sendPromise(Seat to, std::uint32_t ballot);
   void sendAccepted(Seat to, std::uint32_t ballot);
   void sendCommit(Seat to, std::uint32_t number);
+  bool haveAll(const lockstep::View& view);
   void decide(const lockstep::View& view);
   void drop(Seat seat, Tick end);
   SeatMask suspected() const;
@@ -162,8 +163,9 @@ struct Session::Impl {
   std::array<Tick, kMaxPlayers> ends{};
   /// Of each seat: the tick after the last input that was looked at for a control.
   std::array<Tick, kMaxPlayers> controlsUpTo{};
-  /// Dropped seats whose last inputs are still to come from others.
+  /// Dropped seats whose inputs up to these ticks are still to come from others.
   SeatMask incomplete = 0;
+  std::array<Tick, kMaxPlayers> backfillTo{};
 
   Tick current = 0;
   Tick certain = 0;

@@ -30,7 +30,8 @@ bool quorum(SeatMask some, SeatMask voters);
 /// those to be dropped, and tells how many it has; what it accepted once it tells every later proposer.
 ///
 /// A proposer asks all who shall stay: the last input of a dropped player is the latest that any of them has,
-/// so nobody who goes on has used a later one.
+/// so nobody who goes on has used a later one. A peer accepts when it has all of these inputs, and a decision
+/// waits for all who stay: whoever had them may go afterwards.
 class ViewChange {
  public:
   struct Promise {
