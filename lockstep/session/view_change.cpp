@@ -47,9 +47,9 @@ void ViewChange::propose(Seat self, SeatMask stay, SeatMask dropped) {
 }
 
 SeatMask ViewChange::missing() const {
-  // A voter that has left need not answer, but may.
-  const SeatMask asked = static_cast<SeatMask>((voters_ | stay_) & ~dropped_);
-  return static_cast<SeatMask>(asked & ~(asking() ? accepts_ : promises_));
+  // A voter that has left need not answer, but may. A value of an earlier ballot may drop others.
+  const SeatMask dropped = asking() ? value_.dropped : dropped_;
+  return static_cast<SeatMask>((voters_ | stay_) & ~dropped & ~(asking() ? accepts_ : promises_));
 }
 
 void ViewChange::promisedBy(Seat seat, const Promise& promise) {
@@ -71,7 +71,7 @@ void ViewChange::promisedBy(Seat seat, const Promise& promise) {
 bool ViewChange::acceptedBy(Seat seat, std::uint32_t ballot) {
   if (!asking() || ballot != ballot_) return false;
   accepts_ |= bit(seat);
-  return quorum(accepts_, voters_) && (stay_ & ~accepts_) == 0;
+  return quorum(accepts_, voters_) && (stay_ & ~value_.dropped & ~accepts_) == 0;
 }
 
 }  // namespace samestep::lockstep
