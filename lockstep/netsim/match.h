@@ -52,6 +52,7 @@ struct MatchReport {
   std::uint32_t desynced = 0;
   Tick desyncTick = 0;
   /// What happened in the match, for the record of what seeds cover.
+  std::uint32_t peers = 0;
   std::uint32_t survivors = 0;
   std::uint32_t dropped = 0;
   std::uint32_t left = 0;

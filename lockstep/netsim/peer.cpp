@@ -61,7 +61,7 @@ Peer::Peer(const SessionSettings& settings, const MatchOptions& options, Network
     return size;
   };
   session_ = std::make_unique<Session>(settings, game, transport);
-  slots_.resize(session_->slots());
+  slots_.resize(kSaveSlots);
 }
 
 Time Peer::local(Time now) const {

@@ -23,5 +23,7 @@ class SimGame {
 
 /// One integer, mixed with every input.
 std::unique_ptr<SimGame> makeIntegerGame();
+/// Physics: a Space in Fixed.
+std::unique_ptr<SimGame> makeArenaGame();
 
 }  // namespace samestep::netsim

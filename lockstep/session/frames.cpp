@@ -70,7 +70,7 @@ void Session::Impl::confirm() {
 /// Goes back to before the first step that was made with a wrong input, and makes the steps again.
 void Session::Impl::rollBack() {
   const bool old = settings.saving == Saving::sparse && settings.window > 0 && current > certain &&
-                   slotOf(certain) != kSlots && saves[slotOf(certain)] + settings.window < certain;
+                   slotOf(certain) != kSaveSlots && saves[slotOf(certain)] + settings.window < certain;
   const Tick target = std::min(wrong, old ? certain : kNever);
   wrong = kNever;
   if (target >= current) return;
@@ -122,12 +122,12 @@ void Session::Impl::step(Tick tick) {
   ++stats.steps;
 }
 
-/// The newest save that is of a tick of at most this; kSlots: none.
+/// The newest save that is of a tick of at most this; kSaveSlots: none.
 std::uint32_t Session::Impl::slotOf(Tick atMost) const {
-  std::uint32_t found = kSlots;
-  for (std::uint32_t slot = 0; slot < kSlots; ++slot) {
+  std::uint32_t found = kSaveSlots;
+  for (std::uint32_t slot = 0; slot < kSaveSlots; ++slot) {
     if (saves[slot] == kNever || saves[slot] > atMost) continue;
-    if (found == kSlots || saves[slot] > saves[found]) found = slot;
+    if (found == kSaveSlots || saves[slot] > saves[found]) found = slot;
   }
   return found;
 }
@@ -136,7 +136,7 @@ std::uint32_t Session::Impl::slotOf(Tick atMost) const {
 std::uint32_t Session::Impl::freeSlot() const {
   const std::uint32_t base = slotOf(certain);
   std::uint32_t oldest = base == 0 ? 1 : 0;
-  for (std::uint32_t slot = 0; slot < kSlots; ++slot) {
+  for (std::uint32_t slot = 0; slot < kSaveSlots; ++slot) {
     if (saves[slot] == kNever) return slot;
     if (slot != base && saves[slot] < saves[oldest]) oldest = slot;
   }
@@ -145,7 +145,7 @@ std::uint32_t Session::Impl::freeSlot() const {
 
 void Session::Impl::save(Tick tick) {
   const std::uint32_t same = slotOf(tick);
-  const std::uint32_t slot = same != kSlots && saves[same] == tick ? same : freeSlot();
+  const std::uint32_t slot = same != kSaveSlots && saves[same] == tick ? same : freeSlot();
   saves[slot] = tick;
   game.save(slot, game.data);
   ++stats.saves;

@@ -131,7 +131,6 @@ SessionState Session::state() const { return impl_->state; }
 EndReason Session::endReason() const { return impl_->reason; }
 Tick Session::tick() const { return impl_->current; }
 Tick Session::confirmed() const { return impl_->certain; }
-std::uint32_t Session::slots() const { return kSlots; }
 std::uint16_t Session::present() const { return impl_->live(); }
 const SessionStats& Session::stats() const { return impl_->stats; }
 

@@ -39,7 +39,6 @@ inline constexpr std::uint32_t kKeptViews = 2 * kMaxPlayers;
 inline constexpr std::uint32_t kKeptHashes = 16;
 inline constexpr std::uint32_t kKeptEvents = 64;
 inline constexpr std::uint32_t kKeptCommands = 32;
-inline constexpr std::uint32_t kSlots = kMaxWindow + 2;
 
 /// What is known of another peer.
 struct Link {
@@ -172,7 +171,7 @@ struct Session::Impl {
   /// The first step that was made with a wrong input; kNever: none.
   Tick wrong = lockstep::kNever;
   bool shown = false;  ///< Steps ahead of `current` were made to be shown.
-  std::array<Tick, lockstep::kSlots> saves;
+  std::array<Tick, kSaveSlots> saves;
 
   std::array<std::vector<std::uint8_t>, lockstep::kKeptCommands> commands;
   std::uint32_t commandsTaken = 0;

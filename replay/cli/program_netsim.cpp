@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -16,6 +17,7 @@ struct Options {
   std::string peers = "2-16";
   std::uint32_t ticks = 3600;
   std::vector<std::string> faults{"all"};
+  std::string game = "arena";
   std::string planted = "none";
   bool shrinks = true;
 };
@@ -57,11 +59,12 @@ netsim::Planted plantedNamed(const std::string& name) {
   return netsim::Planted::none;
 }
 
-std::string commandOf(const MatchOptions& options, const std::string& planted) {
+std::string commandOf(const MatchOptions& options, const Options& asked) {
   std::string text = "samestep netsim --seeds " + std::to_string(options.seed) + " --peers " +
                      std::to_string(options.peers) + " --ticks " + std::to_string(options.ticks) +
                      " --fault " + netsim::faultNames(options.faults);
-  if (planted != "none") text += " --plant " + planted;
+  if (asked.game != "arena") text += " --game " + asked.game;
+  if (asked.planted != "none") text += " --plant " + asked.planted;
   return text;
 }
 
@@ -72,9 +75,9 @@ void tellFailure(const MatchOptions& options, const MatchReport& report, const O
     std::printf("  the detector spoke up for tick %u, on peers with bits %x\n", report.desyncTick,
                 report.desynced);
   }
-  std::printf("  again: %s\n", commandOf(options, asked.planted).c_str());
+  std::printf("  again: %s\n", commandOf(options, asked).c_str());
   if (asked.shrinks) {
-    std::printf("  smaller: %s\n", commandOf(netsim::shrink(options), asked.planted).c_str());
+    std::printf("  smaller: %s\n", commandOf(netsim::shrink(options), asked).c_str());
   }
 }
 
@@ -82,6 +85,7 @@ void tellFailure(const MatchOptions& options, const MatchReport& report, const O
 struct Sum {
   std::uint64_t matches = 0;
   std::uint64_t failed = 0;
+  std::uint64_t peerMilliseconds = 0;
   MatchReport all;
 
   void add(const MatchReport& report) {
@@ -96,6 +100,8 @@ struct Sum {
     all.dropped += report.dropped;
     all.left += report.left;
     all.milliseconds += report.milliseconds;
+    all.payload += report.payload;
+    peerMilliseconds += report.milliseconds * report.peers;
     all.trace = all.trace * 31 + report.trace;
   }
   void print() const {
@@ -105,8 +111,13 @@ struct Sum {
         "waited\n",
         number(matches), number(failed), number(all.milliseconds / 1000), number(all.steps),
         number(all.rollbacks), all.deepest, number(all.waited));
-    std::printf("%llu datagrams, %llu lost; %u peers dropped, %u left; trace %s\n", number(all.datagrams),
-                number(all.lost), all.dropped, all.left, hex(all.trace).c_str());
+    // IP and UDP take 28 bytes of each.
+    const std::uint64_t bytes = all.payload + 28 * all.datagrams;
+    std::printf(
+        "%llu datagrams, %llu lost; %llu bytes a second sent by each peer; %u peers dropped, %u left\n",
+        number(all.datagrams), number(all.lost),
+        number(bytes * 1000 / std::max<std::uint64_t>(peerMilliseconds, 1)), all.dropped, all.left);
+    std::printf("trace %s\n", hex(all.trace).c_str());
   }
 };
 
@@ -128,6 +139,7 @@ int run(const Options& asked) {
     options.ticks = asked.ticks;
     options.faults = faults;
     options.planted = plantedNamed(asked.planted);
+    options.makeGame = asked.game == "arena" ? netsim::makeArenaGame : netsim::makeIntegerGame;
     const MatchReport report = netsim::runMatch(options);
     sum.add(report);
     if (!report.violations.empty()) tellFailure(options, report, asked);
@@ -155,6 +167,9 @@ void addNetsim(CLI::App& app, int& result) {
           "What may go wrong: loss, partition, stall, crash, leave, change, drift, hostile, asymmetric, "
           "all or none")
       ->delimiter(',')
+      ->capture_default_str();
+  word->add_option("--game", options->game, "What is played: physics, or a game whose state is one integer")
+      ->check(CLI::IsMember({"arena", "integer"}))
       ->capture_default_str();
   word->add_option("--plant", options->planted, "Break one peer on purpose; the run must then fail")
       ->check(CLI::IsMember({"none", "flip", "deaf", "forgets"}))

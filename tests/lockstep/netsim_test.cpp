@@ -37,6 +37,26 @@ INSTANTIATE_TEST_SUITE_P(Netsim, FaultTest,
                                            kHostile, kAsymmetric, kAllFaults),
                          [](const auto& fault) { return faultNames(fault.param); });
 
+TEST(NetsimTest, PeersOfAPhysicsGameStayTheSame) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    MatchOptions physics = options(seed, kAllFaults, 300);
+    physics.makeGame = makeArenaGame;
+    EXPECT_EQ(all(runMatch(physics)), "") << "seed " << seed;
+  }
+}
+
+// Negative control: one unit in the position of one body, 2^-32 m.
+TEST(NetsimTest, OneUnitOfOneBodyIsCaughtByEveryPeer) {
+  MatchOptions physics = options(3, kLoss, 300);
+  physics.makeGame = makeArenaGame;
+  physics.planted = Planted::flip;
+
+  const MatchReport report = runMatch(physics);
+
+  EXPECT_THAT(report.violations, ::testing::Contains(::testing::HasSubstr("states of tick")));
+  EXPECT_EQ(report.desynced, (1u << physics.peers) - 1) << all(report);
+}
+
 TEST(NetsimTest, AMatchIsTheSameEachTime) {
   const MatchReport first = runMatch(options(7, kAllFaults));
   const MatchReport again = runMatch(options(7, kAllFaults));

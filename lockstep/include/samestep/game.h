@@ -13,6 +13,10 @@ using Tick = std::uint32_t;
 using Seat = std::uint8_t;
 inline constexpr Seat kMaxPlayers = 16;
 inline constexpr Seat kNoSeat = 0xff;
+/// The longest prediction window, ticks.
+inline constexpr std::uint8_t kMaxWindow = 16;
+/// How many states a game keeps.
+inline constexpr std::uint32_t kSaveSlots = kMaxWindow + 2;
 
 /// What one player does in one tick.
 ///
@@ -40,7 +44,7 @@ struct TickInputs {
 /// The state must depend on nothing but the state before and the inputs.
 struct Game {
   void* data = nullptr;
-  /// Keeps the present state under a number below Session::slots(), in place of what was there.
+  /// Keeps the present state under a number below kSaveSlots, in place of what was there.
   void (*save)(std::uint32_t slot, void* data) = nullptr;
   /// Brings back what was kept last under this number.
   void (*load)(std::uint32_t slot, void* data) = nullptr;
@@ -49,14 +53,9 @@ struct Game {
   /// A number that differs where two states differ; the same on every machine.
   std::uint64_t (*hash)(void* data) = nullptr;
 
-  // Needed only where players join or watch a match under way.
-
-  /// Writes the present state if `into` has room for it.
-  /// @return the bytes needed
-  std::uint64_t (*write)(std::span<std::uint8_t> into, void* data) = nullptr;
-  /// Takes a state that another peer wrote. These bytes come from outside.
-  /// @return false for bytes that are no state; the game is then as before
-  bool (*read)(std::span<const std::uint8_t> bytes, void* data) = nullptr;
+  /// For SyncTest, and may be null: names the first thing in which two kept states differ, cut to fit `text`.
+  /// @return whether they differ
+  bool (*difference)(std::uint32_t slotA, std::uint32_t slotB, std::span<char> text, void* data) = nullptr;
 };
 
 }  // namespace samestep

@@ -57,7 +57,6 @@ struct SessionSettings {
   std::uint32_t endAfter = 15'000'000;
 };
 
-inline constexpr std::uint8_t kMaxWindow = 16;
 inline constexpr std::uint8_t kMaxInputDelay = 16;
 inline constexpr std::uint8_t kMaxRunAhead = 4;
 
@@ -167,8 +166,6 @@ class Session {
   /// Steps made, and steps whose inputs are all known; the latter may be ahead.
   Tick tick() const;
   Tick confirmed() const;
-  /// How many numbers Game::save uses.
-  std::uint32_t slots() const;
   /// Bit by seat: who plays now.
   std::uint16_t present() const;
   /// How long a frame should last, in thousandths of the usual: over 1000 for who is ahead of the others.

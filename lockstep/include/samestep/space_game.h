@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <samestep/game.h>
+#include <samestep/session.h>
+#include <samestep/space.h>
+
+#include <cstdint>
+#include <span>
+
+namespace samestep {
+
+/// What a game keeps beside its Space: scores, timers, random numbers. `data` is handed to each function.
+struct OwnState {
+  void* data = nullptr;
+  void (*save)(std::uint32_t slot, void* data) = nullptr;
+  void (*load)(std::uint32_t slot, void* data) = nullptr;
+  std::uint64_t (*hash)(void* data) = nullptr;
+};
+
+/// A Space as a game of a Session or SyncTest. The Space, and what `data` points to, must outlive it.
+///
+///     SpaceGame<Fixed> game(space, ratio<Fixed>(1, 60), applyInputs);
+///     game.describe(settings);
+///     Session session(settings, game.functions(), transport);
+template <Scalar S>
+class SpaceGame {
+ public:
+  /// Does to the Space what the players do, before each step. It must go by the Space, the OwnState and the
+  /// inputs alone.
+  using ApplyInputs = void (*)(Space<S>& space, const TickInputs& inputs, void* data);
+
+  /// @param timeStep  of every step, s
+  /// @param own       with all of its functions, or none
+  /// @throws ValueOutOfRange for a null `apply` and for a part of an OwnState
+  SpaceGame(Space<S>& space, S timeStep, ApplyInputs apply, void* data = nullptr, const OwnState& own = {});
+  ~SpaceGame();
+  SpaceGame(const SpaceGame&) = delete;
+  SpaceGame& operator=(const SpaceGame&) = delete;
+
+  /// The functions of this object, which must outlive who calls them.
+  Game functions();
+  /// Puts in what peers compare before they start: the revision, the fingerprint of this machine, and the
+  /// hash of the Space as it is now with the time step. A settings' content is mixed in: that of the game's
+  /// own data.
+  void describe(SessionSettings& settings) const;
+
+ private:
+  struct Impl;
+  Impl* impl_;
+};
+
+#ifndef SAMESTEP_FIXED_ONLY
+extern template class SpaceGame<double>;
+#endif
+extern template class SpaceGame<Fixed>;
+
+}  // namespace samestep

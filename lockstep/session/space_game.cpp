@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/error.h>
+#include <samestep/fingerprint.h>
+#include <samestep/space_game.h>
+#include <samestep/state_diff.h>
+#include <samestep/version.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <string>
+
+namespace samestep {
+namespace {
+
+/// One number from two, such that neither is lost.
+std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
+  std::uint64_t value = a * 0x9e3779b97f4a7c15u + b;
+  value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9u;
+  value = (value ^ value >> 27) * 0x94d049bb133111ebu;
+  return value ^ value >> 31;
+}
+
+std::uint64_t bitsOf(double value) { return std::bit_cast<std::uint64_t>(value); }
+std::uint64_t bitsOf(Fixed value) { return static_cast<std::uint64_t>(value.raw()); }
+
+}  // namespace
+
+template <Scalar S>
+struct SpaceGame<S>::Impl {
+  static Impl& self(void* data) { return *static_cast<Impl*>(data); }
+
+  void save(std::uint32_t slot) {
+    space.save(saved[slot]);
+    if (own.save != nullptr) own.save(slot, own.data);
+  }
+  void load(std::uint32_t slot) {
+    space.restore(saved[slot]);
+    if (own.load != nullptr) own.load(slot, own.data);
+  }
+  void step(const TickInputs& inputs) {
+    apply(space, inputs, data);
+    space.step(timeStep);
+  }
+  std::uint64_t hash() const {
+    return own.hash == nullptr ? space.hash() : mix(space.hash(), own.hash(own.data));
+  }
+  bool difference(std::uint32_t slotA, std::uint32_t slotB, std::span<char> text) const {
+    const auto found = differences(saved[slotA].state(), saved[slotB].state(), 1);
+    if (found.empty()) return false;
+    const FieldDifference& first = found.front();
+    const std::string line = first.object + ", " + first.field + ": " + first.a + " and " + first.b;
+    if (text.empty()) return true;
+    const std::size_t length = std::min(line.size(), text.size() - 1);
+    std::copy_n(line.begin(), length, text.begin());
+    text[length] = 0;
+    return true;
+  }
+
+  Space<S>& space;
+  S timeStep;
+  ApplyInputs apply;
+  void* data;
+  OwnState own;
+  std::array<SavedSpace<S>, kSaveSlots> saved;
+};
+
+template <Scalar S>
+SpaceGame<S>::SpaceGame(Space<S>& space, S timeStep, ApplyInputs apply, void* data, const OwnState& own)
+    : impl_(nullptr) {
+  require<Fault::ValueOutOfRange>(apply != nullptr, "A SpaceGame has a function that applies inputs.");
+  const bool all = own.save != nullptr && own.load != nullptr && own.hash != nullptr;
+  const bool none = own.save == nullptr && own.load == nullptr && own.hash == nullptr;
+  require<Fault::ValueOutOfRange>(all || none, "An OwnState has all of its functions, or none.");
+  impl_ = new Impl{space, timeStep, apply, data, own, {}};
+}
+
+template <Scalar S>
+SpaceGame<S>::~SpaceGame() {
+  delete impl_;
+}
+
+template <Scalar S>
+Game SpaceGame<S>::functions() {
+  Game game;
+  game.data = impl_;
+  game.save = [](std::uint32_t slot, void* data) { Impl::self(data).save(slot); };
+  game.load = [](std::uint32_t slot, void* data) { Impl::self(data).load(slot); };
+  game.step = [](const TickInputs& inputs, void* data) { Impl::self(data).step(inputs); };
+  game.hash = [](void* data) { return Impl::self(data).hash(); };
+  game.difference = [](std::uint32_t slotA, std::uint32_t slotB, std::span<char> text, void* data) {
+    return Impl::self(data).difference(slotA, slotB, text);
+  };
+  return game;
+}
+
+template <Scalar S>
+void SpaceGame<S>::describe(SessionSettings& settings) const {
+  settings.revision = kSimulationRevision;
+  settings.fingerprint = fingerprint<S>();
+  settings.content = mix(mix(settings.content, impl_->hash()), bitsOf(impl_->timeStep));
+}
+
+#ifndef SAMESTEP_FIXED_ONLY
+template class SpaceGame<double>;
+#endif
+template class SpaceGame<Fixed>;
+
+}  // namespace samestep

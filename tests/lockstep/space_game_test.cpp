@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/space_game.h>
+
+#include <samestep/circle_shape.h>
+#include <samestep/error.h>
+#include <samestep/version.h>
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "lockstep/session_pair.h"
+
+namespace samestep {
+namespace {
+
+/// Two discs that players push, and a score beside the Space.
+struct Scored {
+  explicit Scored(int mass = 1) {
+    for (int i = 0; i < 2; ++i) {
+      Body<Fixed> body(Fixed(mass), Fixed(1));
+      body.setPosition({Fixed(3 * i), Fixed(0)});
+      bodies[static_cast<std::size_t>(i)] = space.add(body);
+      space.add(circleShape<Fixed>(bodies[static_cast<std::size_t>(i)], Fixed(1)));
+    }
+  }
+  OwnState own() {
+    OwnState own;
+    own.data = this;
+    own.save = [](std::uint32_t slot, void* data) { self(data).saved[slot] = self(data).score; };
+    own.load = [](std::uint32_t slot, void* data) { self(data).score = self(data).saved[slot]; };
+    own.hash = [](void* data) { return self(data).score; };
+    return own;
+  }
+  static Scored& self(void* data) { return *static_cast<Scored*>(data); }
+  static void apply(Space<Fixed>& world, const TickInputs& inputs, void* data) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (inputs.players[i].held.empty()) continue;
+      auto& body = world.body(self(data).bodies[i]);
+      body.applyForce({Fixed(inputs.players[i].held[0] % 16 - 8), Fixed(0)}, body.position());
+      self(data).score += inputs.players[i].held[0];
+    }
+  }
+
+  Space<Fixed> space;
+  std::array<BodyId, 2> bodies{};
+  std::uint64_t score = 0;
+  std::array<std::uint64_t, kSaveSlots> saved{};
+  SpaceGame<Fixed> game{space, ratio<Fixed>(1, 60), apply, this, own()};
+};
+
+TEST(SpaceGameTest, PeersWithStateBesideTheirSpacesStayTheSame) {
+  Post post;
+  std::array<Scored, 2> peers;
+  std::vector<std::unique_ptr<Session>> sessions;
+  for (Seat seat = 0; seat < 2; ++seat) {
+    SessionSettings settings;
+    settings.localSeat = seat;
+    settings.addresses[1] = 1;
+    settings.hashInterval = 1;
+    peers[seat].game.describe(settings);
+    sessions.push_back(std::make_unique<Session>(settings, peers[seat].game.functions(), post.of(seat)));
+  }
+
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    post.cut = i % 30 > 24;
+    for (Seat seat = 0; seat < 2; ++seat) {
+      const std::uint8_t held = static_cast<std::uint8_t>(i / 5 + seat);
+      sessions[seat]->frame(i * 16'667, {&held, 1});
+    }
+  }
+
+  EXPECT_GT(sessions[0]->tick(), 300u);
+  EXPECT_GT(sessions[0]->stats().rollbacks, 10u);
+  SessionEvent event;
+  for (const auto& session : sessions) {
+    while (session->next(event)) EXPECT_NE(event.kind, SessionEvent::Kind::desync);
+  }
+}
+
+TEST(SpaceGameTest, DescribesWorldTimeStepAndBuild) {
+  const Scored light, heavy(2);
+  SessionSettings a, b, c;
+  light.game.describe(a);
+  heavy.game.describe(b);
+  c.content = 5;
+  light.game.describe(c);
+
+  EXPECT_EQ(a.revision, kSimulationRevision);
+  EXPECT_EQ(a.fingerprint, b.fingerprint);
+  EXPECT_NE(a.content, b.content);
+  EXPECT_NE(a.content, c.content);
+}
+
+TEST(SpaceGameTest, RefusesAGameWithoutInputsAndHalfAnOwnState) {
+  Space<Fixed> space;
+  OwnState half;
+  half.hash = [](void*) { return std::uint64_t{0}; };
+
+  EXPECT_THROW(SpaceGame<Fixed>(space, Fixed(0), nullptr), ValueOutOfRange);
+  EXPECT_THROW(SpaceGame<Fixed>(space, Fixed(0), Scored::apply, nullptr, half), ValueOutOfRange);
+}
+
+}  // namespace
+}  // namespace samestep
