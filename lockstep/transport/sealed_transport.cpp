@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: MIT
+#include <samestep/sealed_transport.h>
+#include <sodium.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "transport/handshake.h"
+#include "transport/replay_window.h"
+
+namespace samestep {
+
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+// A sealed datagram: its kind, the receiver's number for the connection, the low half of its own number.
+constexpr std::uint32_t kHead = 5;
+constexpr std::uint32_t kTag = crypto_aead_chacha20poly1305_ietf_ABYTES;
+static_assert(kHead + kTag == SealedTransport::kSealBytes);
+
+constexpr std::uint64_t kCallAgain = 250'000;        // us
+constexpr std::uint64_t kSilenceOfPeer = 3'000'000;  // us, after which a peer is called anew.
+constexpr std::uint32_t kConnectionsOfPeer = 4;
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+std::array<std::uint8_t, 12> nonceOf(std::uint64_t number) {
+  std::array<std::uint8_t, 12> nonce{};
+  for (std::uint32_t i = 0; i < 8; ++i) nonce[4 + i] = static_cast<std::uint8_t>(number >> (8 * i));
+  return nonce;
+}
+
+/// Keys that two peers agreed on, or, while there are none, the place for those of a call.
+struct Connection {
+  enum class State : std::uint8_t { none, calling, unconfirmed, confirmed };
+  State state = State::none;
+  std::uint8_t use = 0;  ///< Counts who had this place, so that late datagrams do not reach the next one.
+  std::uint16_t peerNumber = 0;
+  bool heard = false;  ///< The peer has sent something sealed.
+  std::uint64_t sent = 0;
+  std::uint64_t order = 0;  ///< Of coming into being.
+  ConnectionKeys keys{};
+  ReplayWindow window{};
+  PublicKey callerFresh{};
+  std::array<std::uint8_t, kAnswerBytes> answer{};
+};
+
+struct Peer {
+  Peer() = default;
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  void reset() {
+    used = callable = false;
+    key = {};
+    below = 0;
+    current = calling = kNone;
+    nextCall = lastHeard = 0;
+    call.reset();
+  }
+
+  bool used = false;
+  bool callable = false;
+  PublicKey key{};
+  Address below = 0;
+  std::uint32_t current = kNone;  ///< The connection that is sent on.
+  std::uint32_t calling = kNone;
+  std::uint64_t nextCall = 0;
+  std::uint64_t lastHeard = 0;
+  std::optional<Call> call;
+};
+
+}  // namespace
+
+struct SealedTransport::Impl {
+  Impl(const Transport& carrier, const KeyPair& self, const MatchKey& secret)
+      : below(carrier), own(self), match(secret) {}
+
+  Transport below;
+  KeyPair own;
+  MatchKey match;
+  Admission admission = nullptr;
+  void* admissionData = nullptr;
+  std::uint64_t now = 0;
+  std::uint64_t made = 0;
+  SealCounters counters{};
+  std::array<Peer, kMaxPeers> peers{};
+  std::array<Connection, kMaxPeers * kConnectionsOfPeer> connections{};
+  std::array<std::uint8_t, kMaxDatagram> arrived{};
+
+  std::uint16_t numberOf(std::uint32_t connection) const {
+    return static_cast<std::uint16_t>(connection | static_cast<std::uint32_t>(connections[connection].use)
+                                                       << 8);
+  }
+
+  Peer* find(Address name) {
+    return name >= 1 && name <= kMaxPeers && peers[name - 1].used ? &peers[name - 1] : nullptr;
+  }
+
+  Peer* find(const PublicKey& key) {
+    const auto found = std::find_if(peers.begin(), peers.end(),
+                                    [&](const Peer& peer) { return peer.used && peer.key == key; });
+    return found == peers.end() ? nullptr : &*found;
+  }
+
+  std::uint32_t indexOf(const Peer& peer) const { return static_cast<std::uint32_t>(&peer - peers.data()); }
+
+  Peer* letIn(const PublicKey& key) {
+    if (Peer* known = find(key)) return known;
+    const auto free = std::find_if(peers.begin(), peers.end(), [](const Peer& peer) { return !peer.used; });
+    if (free == peers.end()) return nullptr;
+    free->used = true;
+    free->key = key;
+    return &*free;
+  }
+
+  void remove(Peer& peer) {
+    const std::uint32_t first = indexOf(peer) * kConnectionsOfPeer;
+    for (std::uint32_t i = first; i < first + kConnectionsOfPeer; ++i) occupy(i, Connection::State::none);
+    peer.reset();
+  }
+
+  /// Empties a place and gives it a new number.
+  Connection& occupy(std::uint32_t index, Connection::State state) {
+    const std::uint8_t use = static_cast<std::uint8_t>(connections[index].use + 1);
+    sodium_memzero(&connections[index].keys, sizeof(ConnectionKeys));
+    connections[index] = Connection();
+    connections[index].use = use;
+    connections[index].state = state;
+    connections[index].order = ++made;
+    return connections[index];
+  }
+
+  /// A place among the peer's: an empty one, or that of the oldest connection that is not the current one.
+  std::uint32_t placeFor(const Peer& peer) const {
+    const std::uint32_t first = indexOf(peer) * kConnectionsOfPeer;
+    std::uint32_t best = kNone;
+    for (std::uint32_t i = first; i < first + kConnectionsOfPeer; ++i) {
+      if (i == peer.current || i == peer.calling) continue;
+      if (connections[i].state == Connection::State::none) return i;
+      if (best == kNone || connections[i].order < connections[best].order) best = i;
+    }
+    return best;
+  }
+
+  void callIfNeeded(Peer& peer) {
+    const bool silent = peer.current == kNone || now - peer.lastHeard > kSilenceOfPeer;
+    if (!peer.used || !peer.callable || !silent || now < peer.nextCall) return;
+    if (!peer.call) {
+      peer.calling = placeFor(peer);
+      occupy(peer.calling, Connection::State::calling);
+      peer.call.emplace(own, peer.key, match, numberOf(peer.calling));
+    }
+    peer.nextCall = now + kCallAgain;
+    below.send(peer.below, peer.call->hello(), below.data);
+  }
+
+  /// The peer called knows that its answer arrived by the first sealed datagram.
+  void confirmAgain(Peer& peer) {
+    if (peer.current == kNone || connections[peer.current].heard || now < peer.nextCall) return;
+    peer.nextCall = now + kCallAgain;
+    seal(peer, {});
+  }
+
+  void seal(Peer& peer, Bytes bytes) {
+    Connection& connection = connections[peer.current];
+    const std::uint64_t number = connection.sent++;
+    std::array<std::uint8_t, kMaxDatagram> out;
+    out[0] = static_cast<std::uint8_t>(SealedKind::sealed);
+    out[1] = static_cast<std::uint8_t>(connection.peerNumber);
+    out[2] = static_cast<std::uint8_t>(connection.peerNumber >> 8);
+    out[3] = static_cast<std::uint8_t>(number);
+    out[4] = static_cast<std::uint8_t>(number >> 8);
+    const auto nonce = nonceOf(number);
+    crypto_aead_chacha20poly1305_ietf_encrypt(out.data() + kHead, nullptr, bytes.data(), bytes.size(),
+                                              out.data(), kHead, nullptr, nonce.data(),
+                                              connection.keys.sending.data());
+    below.send(peer.below, Bytes(out).first(kHead + bytes.size() + kTag), below.data);
+  }
+
+  void takeHello(Address from, Bytes datagram) {
+    const auto caller = readHello(own, match, datagram);
+    if (!caller) {
+      ++counters.forged;
+      return;
+    }
+    Peer* peer = find(caller->key);
+    if (peer == nullptr && admission != nullptr && admission(caller->key, admissionData))
+      peer = letIn(caller->key);
+    if (peer == nullptr) {
+      ++counters.strangers;
+      return;
+    }
+    if (const Connection* known = madeFor(*peer, caller->fresh)) {
+      below.send(from, known->answer, below.data);
+      return;
+    }
+    answer(*peer, *caller, from);
+  }
+
+  /// The connection that a hello has led to before.
+  const Connection* madeFor(const Peer& peer, const PublicKey& fresh) const {
+    const std::uint32_t first = indexOf(peer) * kConnectionsOfPeer;
+    for (std::uint32_t i = first; i < first + kConnectionsOfPeer; ++i) {
+      const Connection& connection = connections[i];
+      const bool answered = connection.state != Connection::State::none && connection.answer[0] != 0;
+      if (answered && connection.callerFresh == fresh) return &connection;
+    }
+    return nullptr;
+  }
+
+  void answer(Peer& peer, const Caller& caller, Address from) {
+    const std::uint32_t index = placeFor(peer);
+    Connection& connection = occupy(index, Connection::State::unconfirmed);
+    const auto keys = writeAnswer(caller, match, numberOf(index), connection.answer);
+    if (!keys) {
+      occupy(index, Connection::State::none);
+      ++counters.forged;
+      return;
+    }
+    connection.keys = *keys;
+    connection.peerNumber = caller.number;
+    connection.callerFresh = caller.fresh;
+    below.send(from, connection.answer, below.data);
+  }
+
+  void takeAnswer(Address from, Bytes datagram) {
+    const std::uint32_t index = datagram[1];
+    const auto number = static_cast<std::uint16_t>(datagram[1] | datagram[2] << 8);
+    Peer& peer = peers[index / kConnectionsOfPeer];
+    if (!peer.used || !peer.call || peer.calling != index || numberOf(index) != number) {
+      ++counters.unknown;
+      return;
+    }
+    const auto answered = peer.call->answered(own, datagram);
+    if (!answered) {
+      ++counters.forged;
+      return;
+    }
+    connections[index].keys = answered->keys;
+    connections[index].peerNumber = answered->peerNumber;
+    peer.call.reset();
+    peer.calling = kNone;
+    makeCurrent(peer, index, from);
+    peer.nextCall = now + kCallAgain;
+    seal(peer, {});
+  }
+
+  void makeCurrent(Peer& peer, std::uint32_t index, Address from) {
+    connections[index].state = Connection::State::confirmed;
+    peer.current = index;
+    peer.below = from;
+    peer.lastHeard = now;
+  }
+
+  /// @return the length of what was sealed, or nothing for a datagram that is dropped
+  std::optional<std::uint32_t> open(Address& from, Bytes datagram, std::span<std::uint8_t> into) {
+    const std::uint32_t index = datagram[1];
+    const auto number = static_cast<std::uint16_t>(datagram[1] | datagram[2] << 8);
+    Connection& connection = connections[index];
+    if (connection.state < Connection::State::unconfirmed || numberOf(index) != number) {
+      ++counters.unknown;
+      return {};
+    }
+    const std::uint64_t whole =
+        connection.window.wholeOf(static_cast<std::uint16_t>(datagram[3] | datagram[4] << 8));
+    if (connection.window.seen(whole)) {
+      ++counters.replayed;
+      return {};
+    }
+    const auto nonce = nonceOf(whole);
+    const Bytes sealed = datagram.subspan(kHead);
+    std::array<std::uint8_t, kMaxDatagram> plain;
+    if (crypto_aead_chacha20poly1305_ietf_decrypt(plain.data(), nullptr, nullptr, sealed.data(),
+                                                  sealed.size(), datagram.data(), kHead, nonce.data(),
+                                                  connection.keys.receiving.data()) != 0) {
+      ++counters.forged;
+      return {};
+    }
+    connection.window.mark(whole);
+    hear(index, from);
+    const auto length = static_cast<std::uint32_t>(sealed.size() - kTag);
+    if (length > into.size()) {
+      ++counters.malformed;
+      return {};
+    }
+    std::copy_n(plain.begin(), length, into.begin());
+    from = Address{index / kConnectionsOfPeer} + 1;
+    return length;
+  }
+
+  /// What is true once a datagram of a connection was opened: the peer is there, at that address.
+  void hear(std::uint32_t index, Address from) {
+    Peer& peer = peers[index / kConnectionsOfPeer];
+    connections[index].heard = true;
+    peer.lastHeard = now;
+    if (connections[index].state == Connection::State::unconfirmed) {
+      makeCurrent(peer, index, from);
+    } else if (peer.current == index) {
+      peer.below = from;
+    }
+  }
+
+  std::uint32_t receive(Address& from, std::span<std::uint8_t> into) {
+    while (const std::uint32_t length = below.receive(from, arrived, below.data)) {
+      const Bytes datagram = Bytes(arrived).first(std::min(length, kMaxDatagram));
+      const auto kind = static_cast<SealedKind>(datagram[0]);
+      if (kind == SealedKind::sealed && datagram.size() >= kSealBytes) {
+        if (const auto opened = open(from, datagram, into); opened.value_or(0) > 0) return *opened;
+        continue;
+      }
+      const bool hello = kind == SealedKind::hello && datagram.size() == kHelloBytes;
+      const bool answer = kind == SealedKind::answer && datagram.size() == kAnswerBytes;
+      if (!hello && !answer) {
+        ++counters.malformed;
+      } else if (!madeWith(match, datagram)) {
+        ++counters.forged;
+      } else if (hello) {
+        takeHello(from, datagram);
+      } else {
+        takeAnswer(from, datagram);
+      }
+    }
+    return 0;
+  }
+};
+
+SealedTransport::SealedTransport(const Transport& below, const KeyPair& own, const MatchKey& match)
+    : impl_(new Impl(below, own, match)) {
+  if (sodium_init() < 0) randombytes_stir();
+  // Numbers of an earlier run are not those of this one.
+  for (Connection& connection : impl_->connections) {
+    connection.use = static_cast<std::uint8_t>(randombytes_uniform(256));
+  }
+}
+
+SealedTransport::~SealedTransport() {
+  sodium_memzero(impl_->own.secretKey.data(), impl_->own.secretKey.size());
+  for (Connection& connection : impl_->connections) sodium_memzero(&connection.keys, sizeof(ConnectionKeys));
+  delete impl_;
+}
+
+Address SealedTransport::addPeer(const PublicKey& peer) {
+  const Peer* added = impl_->letIn(peer);
+  return added == nullptr ? 0 : Address{impl_->indexOf(*added)} + 1;
+}
+
+Address SealedTransport::addPeer(const PublicKey& peer, Address below) {
+  Peer* added = impl_->letIn(peer);
+  if (added == nullptr) return 0;
+  added->callable = true;
+  added->below = below;
+  added->nextCall = 0;
+  return Address{impl_->indexOf(*added)} + 1;
+}
+
+void SealedTransport::removePeer(Address peer) {
+  if (Peer* found = impl_->find(peer)) impl_->remove(*found);
+}
+
+void SealedTransport::setAdmission(Admission admission, void* data) {
+  impl_->admission = admission;
+  impl_->admissionData = data;
+}
+
+void SealedTransport::update(std::uint64_t now) {
+  impl_->now = now;
+  for (Peer& peer : impl_->peers) {
+    impl_->callIfNeeded(peer);
+    impl_->confirmAgain(peer);
+  }
+}
+
+void SealedTransport::send(Address peer, Bytes bytes) {
+  Peer* found = impl_->find(peer);
+  if (found == nullptr || found->current == kNone || bytes.size() > kMaxPayload) {
+    ++impl_->counters.unsent;
+    return;
+  }
+  impl_->seal(*found, bytes);
+}
+
+std::uint32_t SealedTransport::receive(Address& from, std::span<std::uint8_t> into) {
+  return impl_->receive(from, into);
+}
+
+Transport SealedTransport::transport() {
+  return {this,
+          [](Address to, Bytes bytes, void* data) { static_cast<SealedTransport*>(data)->send(to, bytes); },
+          [](Address& from, std::span<std::uint8_t> into, void* data) {
+            return static_cast<SealedTransport*>(data)->receive(from, into);
+          }};
+}
+
+bool SealedTransport::connected(Address peer) const {
+  const Peer* found = impl_->find(peer);
+  return found != nullptr && found->current != kNone;
+}
+
+PublicKey SealedTransport::keyOf(Address peer) const {
+  const Peer* found = impl_->find(peer);
+  return found == nullptr ? PublicKey{} : found->key;
+}
+
+const SealCounters& SealedTransport::counters() const { return impl_->counters; }
+
+}  // namespace samestep
