@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 
 set(libraries samestep samestep_fixed samestep_flags)
-foreach(optional samestep_recording samestep_replay samestep_lockstep)
+foreach(optional samestep_recording samestep_replay samestep_lockstep samestep_transport)
   if(TARGET ${optional})
     list(APPEND libraries ${optional})
   endif()

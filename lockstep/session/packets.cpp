@@ -191,7 +191,7 @@ void Session::Impl::receiveHello(Seat seat, PacketReader& reader) {
 void Session::Impl::sendInputs(Seat seat) {
   const Link& link = links[seat];
   if (ends[seat] != kNever && (change.voters() & bit(seat)) == 0) return;
-  std::uint8_t bytes[kMaxDatagram];
+  std::uint8_t bytes[kMaxPacket];
   PacketWriter writer(bytes);
   header(writer, Packet::inputs, paused ? kPaused : 0);
   writer.u16(static_cast<std::uint16_t>(link.acked));
@@ -300,7 +300,7 @@ void Session::Impl::receiveWant(Seat seat, PacketReader& reader) {
   const InputStream& stream = streams[gone];
   const bool stands = ends[gone] != kNever || (change.frozen() & bit(gone)) != 0;
   if (!stands || !stream.has(from)) return;
-  std::uint8_t bytes[kMaxDatagram];
+  std::uint8_t bytes[kMaxPacket];
   PacketWriter writer(bytes);
   header(writer, Packet::backfill);
   writer.u8(gone);

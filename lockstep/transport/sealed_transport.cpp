@@ -23,6 +23,8 @@ constexpr std::uint64_t kCallAgain = 250'000;        // us
 constexpr std::uint64_t kSilenceOfPeer = 3'000'000;  // us, after which a peer is called anew.
 constexpr std::uint32_t kConnectionsOfPeer = 4;
 constexpr std::uint32_t kNone = 0xffffffffu;
+/// No call looks at more datagrams than these: whoever floods a peer shall not stop it.
+constexpr int kMostDropped = 256;
 
 std::array<std::uint8_t, 12> nonceOf(std::uint64_t number) {
   std::array<std::uint8_t, 12> nonce{};
@@ -302,7 +304,9 @@ struct SealedTransport::Impl {
   }
 
   std::uint32_t receive(Address& from, std::span<std::uint8_t> into) {
-    while (const std::uint32_t length = below.receive(from, arrived, below.data)) {
+    for (int dropped = 0; dropped < kMostDropped; ++dropped) {
+      const std::uint32_t length = below.receive(from, arrived, below.data);
+      if (length == 0) break;
       const Bytes datagram = Bytes(arrived).first(std::min(length, kMaxDatagram));
       const auto kind = static_cast<SealedKind>(datagram[0]);
       if (kind == SealedKind::sealed && datagram.size() >= kSealBytes) {

@@ -10,7 +10,7 @@
 namespace samestep::netsim {
 namespace {
 
-MatchOptions options(std::uint64_t seed, std::uint32_t faults, Tick ticks = 600) {
+MatchOptions options(std::uint64_t seed, std::uint32_t faults, Tick ticks = 300) {
   MatchOptions options;
   options.seed = seed;
   options.peers = static_cast<std::uint32_t>(2 + seed % 15);
@@ -27,7 +27,7 @@ std::string all(const MatchReport& report) {
 class FaultTest : public ::testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(FaultTest, LeavesPeersTheSame) {
-  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     EXPECT_EQ(all(runMatch(options(seed, GetParam()))), "") << "seed " << seed;
   }
 }
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Netsim, FaultTest,
                          [](const auto& fault) { return faultNames(fault.param); });
 
 TEST(NetsimTest, PeersOfAPhysicsGameStayTheSame) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     MatchOptions physics = options(seed, kAllFaults, 300);
     physics.makeGame = makeArenaGame;
     EXPECT_EQ(all(runMatch(physics)), "") << "seed " << seed;
@@ -68,8 +68,8 @@ TEST(NetsimTest, AMatchIsTheSameEachTime) {
 
 TEST(NetsimTest, TheSeedsCoverRollbacksDropsAndLeaving) {
   MatchReport sum;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const MatchReport report = runMatch(options(seed, kAllFaults, 300));
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const MatchReport report = runMatch(options(seed, kAllFaults));
     sum.rollbacks += report.rollbacks;
     sum.deepest = std::max(sum.deepest, report.deepest);
     sum.dropped += report.dropped;
@@ -78,15 +78,15 @@ TEST(NetsimTest, TheSeedsCoverRollbacksDropsAndLeaving) {
   }
   EXPECT_GT(sum.rollbacks, 1000u);
   EXPECT_GE(sum.deepest, 8u);
-  EXPECT_GT(sum.dropped, 5u);
-  EXPECT_GT(sum.left, 5u);
+  EXPECT_GT(sum.dropped, 2u);
+  EXPECT_GT(sum.left, 2u);
   EXPECT_GT(sum.waited, 100u);
 }
 
 // Negative control: an oracle that cannot fail proves nothing.
 TEST(NetsimTest, APlantedFaultIsCaughtByTheOracleAndByEveryPeer) {
   for (const Planted planted : {Planted::flip, Planted::deaf}) {
-    for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       MatchOptions broken = options(seed, kLoss | kDrift);
       broken.planted = planted;
 
@@ -106,11 +106,11 @@ TEST(NetsimTest, AGameThatComesBackWronglyFromALoadIsCaught) {
     caught += runMatch(broken).violations.empty() ? 0 : 1;
   }
   // Peers in pure lockstep load nothing, and a later load from before mends the state.
-  EXPECT_GE(caught, 5);
+  EXPECT_GE(caught, 3);
 }
 
 TEST(NetsimTest, AFailureIsShrunkToAMatchThatStillFails) {
-  MatchOptions broken = options(12, kAllFaults, 1200);
+  MatchOptions broken = options(5, kAllFaults, 600);
   broken.planted = Planted::flip;
   ASSERT_FALSE(runMatch(broken).violations.empty());
 

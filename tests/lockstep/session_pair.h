@@ -65,6 +65,7 @@ class Post {
   }
   void put(Address from, Address to, std::span<const std::uint8_t> bytes) {
     Box& box = boxes_[to];
+    longest = std::max(longest, bytes.size());
     if (cut || box.put - box.taken == kBox) return;
     Mail& mail = box.mail[box.put++ % kBox];
     mail.from = from;
@@ -74,6 +75,7 @@ class Post {
 
   /// Loses everything.
   bool cut = false;
+  std::size_t longest = 0;
 
  private:
   static constexpr std::uint32_t kBox = 64;

@@ -134,6 +134,30 @@ TEST(SessionTest, AQueueOfCommandsIsBoundedAndSaysSo) {
   EXPECT_TRUE(table.sessions[0]->command(command));
 }
 
+// A transport that seals adds its own bytes, up to kMaxDatagram.
+TEST(SessionTest, NoPacketIsLongerThanATransportHasRoomFor) {
+  SessionSettings wide;
+  wide.maxHeldBytes = 64;
+  wide.maxCommandBytes = 128;
+  wide.inputDelay = 16;
+  Table table(2, wide);
+  std::array<std::uint8_t, 64> held{};
+  const std::array<std::uint8_t, 128> command{};
+  for (int i = 0; i < 60; ++i) {
+    table.now += 16'667;
+    held[0] = static_cast<std::uint8_t>(i);
+    for (const auto& session : table.sessions) {
+      session->command(command);
+      session->frame(table.now, held);
+    }
+    // Then nothing arrives, and inputs pile up.
+    table.post->cut = i > 20;
+  }
+
+  EXPECT_GT(table.post->longest, 900u);
+  EXPECT_LE(table.post->longest, kMaxPacket);
+}
+
 TEST(SessionTest, WhoLeavesIsAbsentFromTheSameTickEverywhere) {
   Table table(3);
   table.play(50);

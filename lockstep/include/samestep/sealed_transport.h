@@ -55,6 +55,7 @@ class SealedTransport {
   static constexpr std::uint32_t kSealBytes = 21;
   /// The longest datagram that can be sent.
   static constexpr std::uint32_t kMaxPayload = kMaxDatagram - kSealBytes;
+  static_assert(kMaxPayload >= kMaxPacket, "a session's packets fit");
   static constexpr std::uint32_t kMaxPeers = 64;
   /// Whether a peer that is not known, but has the match's key, is let in.
   using Admission = bool (*)(const PublicKey& peer, void* data);

@@ -11,6 +11,8 @@ using Address = std::uint64_t;
 
 /// The longest datagram, so that none is cut into pieces on its way.
 inline constexpr std::uint32_t kMaxDatagram = 1200;
+/// The longest that a Session sends: a transport may add its own bytes, up to kMaxDatagram.
+inline constexpr std::uint32_t kMaxPacket = 1160;
 
 /// Datagrams, as UDP has them: each arrives once, never, twice, late or out of order. `data` is handed to
 /// both functions.
