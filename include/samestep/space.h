@@ -174,7 +174,8 @@ class Space {
   }
   /// Also forgets the bias velocities. A body that becomes dynamic has the mass it had when it was so last,
   /// unless shapes with mass came, went or changed since: those count as if it had been dynamic all along.
-  /// The same type again changes nothing.
+  /// The same type again changes nothing. Where two static bodies touch that did when one of them moved,
+  /// nothing is called while they touch; separate is, once, when they no longer do.
   /// @throws SpaceLocked, BodyNotFound; MainStaticBody for the designated static body; SizeOutOfRange or
   ///         IllegalBody where its shapes are too large or too heavy for a body that moves
   /// MIS: bodySetType
@@ -281,7 +282,8 @@ class Space {
 
   /// Runs after the step or query that is under way, or at once if there is none; once per key until then:
   /// false if the key is waiting already. Callbacks run in the order they were added. When one throws, the
-  /// later ones run after the next step or query.
+  /// later ones run after the next step or query. Those that wait when another world is restored, loaded or
+  /// adopted, and those added within a step that is refused, are dropped: what they meant to do is gone.
   /// @throws ValueOutOfRange for a null function
   bool addPostStepCallback(PostStepFunc function, std::uint64_t key, void* data = nullptr);
 

@@ -73,6 +73,12 @@ struct alignas(32) ShapeTraits {
   }
 };
 
+/// Whether two shapes whose boxes overlap may collide at all.
+template <Scalar S>
+[[gnu::always_inline]] inline bool mayCollide(const ShapeTraits<S>& a, const ShapeTraits<S>& b) {
+  return a.body != b.body && accepts(a.filter, b.filter);
+}
+
 /// The circle around a shape whose centre is the shape's centroid, in the body's coordinates.
 template <Scalar S>
 struct CircleAround {

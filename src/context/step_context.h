@@ -37,7 +37,7 @@ struct StepContext {
   bool isSoft() const { return state.settings.solver == SolverKind::softStep; }
   /// How far apart two boxes may be for their shapes to be a pair, m.
   S pairMargin() const { return isSoft() ? state.settings.contactMargin : S(0); }
-  /// Whether both bodies of a pair are static: such a pair stays as it is.
+  /// Whether both bodies of a pair are static: nothing looks for such a pair.
   bool rests(const Pair<S>& pair) const {
     const auto isStatic = [&](ShapeId id) {
       return state.bodies.valueAt(state.shapes.valueAt(id.index).body().index).type() == BodyType::staticBody;

@@ -16,6 +16,15 @@ class PostStepQueue {
   using Function = void (*)(Space<S>& space, std::uint64_t key, void* data);
 
   bool running() const { return running_; }
+  /// How many there are, those that ran in the go under way included: a place for dropFrom.
+  std::size_t size() const { return waiting_.size(); }
+  /// Forgets those added since the queue had a size: what they were to do belongs to what has not happened.
+  void dropFrom(std::size_t size) {
+    if (waiting_.size() > size)
+      waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(size), waiting_.end());
+  }
+  /// Forgets all that wait: what they were to do belongs to a world that is gone.
+  void drop() { dropFrom(done_); }
   /// @return false if the key is waiting already
   bool add(Function function, std::uint64_t key, void* data) {
     for (const Callback& waiting : waiting_) {
@@ -50,6 +59,7 @@ class PostStepQueue {
     ~Running() {
       auto& waiting = queue_.waiting_;
       waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(queue_.done_));
+      queue_.done_ = 0;
       queue_.running_ = false;
     }
     Running(const Running&) = delete;

@@ -533,6 +533,7 @@ void Space<S>::adopt(const WorldState<S>& state) {
   requireUnlocked();
   checkAdoptable(parts_->wiring, state);
   state_ = state;
+  parts_->postStep.drop();
   takeOver(contextOf());
 }
 
@@ -541,6 +542,7 @@ void Space<S>::adopt(WorldState<S>&& state) {
   requireUnlocked();
   checkAdoptable(parts_->wiring, state);
   state_ = std::move(state);
+  parts_->postStep.drop();
   takeOver(contextOf());
 }
 
@@ -641,7 +643,11 @@ void Space<S>::step(S dt) {
   StepContext<S> context = contextOf(dt);
   Step<S>::check(context);
   LockGuard guard(*this);
-  parts_->step.run(context);
+  const std::size_t waiting = parts_->postStep.size();
+  if (!parts_->step.run(context)) {
+    parts_->postStep.dropFrom(waiting);
+    fail<Fault::TooManyPairs>();
+  }
   guard.finish();
 }
 

@@ -74,7 +74,7 @@ void Step<S>::check(const StepContext<S>& step) {
 }
 
 template <Scalar S>
-void Step<S>::run(StepContext<S>& step) {
+bool Step<S>::run(StepContext<S>& step) {
   step.dtBefore = step.state.timeStep;
   step.state.timeStep = step.dt;
   ++step.state.stamp;
@@ -86,33 +86,35 @@ void Step<S>::run(StepContext<S>& step) {
   // it: nothing but what was moved by hand has to be placed.
   if (step.isSoft() || !step.wiring.positionFuncs.empty()) derived.refresh(step.state);
   const KeepPlaced keep(derived);
-  runLines(step);
+  if (!runLines(step)) return false;
   derived.leftMidway = false;
+  return true;
 }
 
 template <Scalar S>
-void Step<S>::runLines(StepContext<S>& step) {
+bool Step<S>::runLines(StepContext<S>& step) {
   const bool movesFirst = !step.isSoft();
   if (movesFirst && FindPairs<S>::mayFindTooMany(step)) bodiesBefore_ = step.state.bodies;
   for (const Line& line : lines(step.state.settings.solver)) {
     line.run(*this, step);
     if (step.refused) {
       if (movesFirst) step.state.bodies = bodiesBefore_;
-      refuse(step);
+      takeBack(step);
+      return false;
     }
     if (step.wiring.observer != nullptr)
       step.wiring.observer(step.space, line.name, step.wiring.observerData);
   }
+  return true;
 }
 
 /// Ends a step that found too many pairs, with all bodies where they were: it is as if it had not begun.
 template <Scalar S>
-void Step<S>::refuse(StepContext<S>& step) {
+void Step<S>::takeBack(StepContext<S>& step) {
   step.state.timeStep = step.dtBefore;
   --step.state.stamp;
   step.derived.touchAll(step.state);
   step.derived.leftMidway = false;
-  fail<Fault::TooManyPairs>();
 }
 
 #define SAMESTEP_EACH_SCALAR template struct Step<S>;

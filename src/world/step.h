@@ -28,8 +28,9 @@ struct Step {
   /// @throws ValueOutOfRange, IllegalBody, MissingCallback, UnsoundArithmetic, before anything changes
   static void check(const StepContext<S>& step);
   /// Makes a step of a world that was checked.
-  /// @throws TooManyPairs; what callbacks throw
-  void run(StepContext<S>& step);
+  /// @return false where it found too many pairs: then it is as if it had not begun
+  /// @throws what callbacks throw
+  [[nodiscard]] bool run(StepContext<S>& step);
 
   PlaceShapes<S> placeShapes;
   FindPairs<S> findPairs;
@@ -51,8 +52,8 @@ struct Step {
   };
 
   static void tellResults(StepContext<S>& step);
-  void runLines(StepContext<S>& step);
-  [[noreturn]] void refuse(StepContext<S>& step);
+  [[nodiscard]] bool runLines(StepContext<S>& step);
+  static void takeBack(StepContext<S>& step);
 
   SlotMap<Body<S>, BodyId> bodiesBefore_;  // Of a step that may be refused after bodies moved.
 };

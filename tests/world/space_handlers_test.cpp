@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Who is told of a collision, when, in which order, and what the answers do.
+#include <samestep/circle_shape.h>
 #include <samestep/space.h>
 
 #include <algorithm>
@@ -394,6 +395,156 @@ TYPED_TEST(HandlersTest, TwoBodiesMadeStaticKeepTheirContact) {
 
   this->world_.setType(bodyOf(this->world_, b), BodyType::dynamicBody);
   EXPECT_THAT(this->step(), ElementsAre("d.preSolve(10,20)", "d.postSolve(10,20)"));
+}
+
+/// A world in which two discs touched, and of which nothing moves any more.
+template <Scalar S>
+struct RestingContact {
+  Space<S> world;
+  ShapeId a, b;
+  int begins = 0, separates = 0;
+  bool removal = false;
+
+  explicit RestingContact(SolverKind solver, std::uint32_t persistence = 3) {
+    world.setSolver(solver);
+    world.setCollisionPersistence(persistence);
+    a = addDisc<S>(world, {}, S(1), S(1));
+    b = addDisc<S>(world, {ratio<S>(3, 2), S(0)}, S(1), S(1));
+    CollisionHandler<S> handler;
+    handler.data = this;
+    handler.begin = [](Arbiter<S>&, Space<S>&, void* data) {
+      ++static_cast<RestingContact*>(data)->begins;
+      return true;
+    };
+    handler.separate = [](Arbiter<S>& arbiter, Space<S>&, void* data) {
+      ++static_cast<RestingContact*>(data)->separates;
+      static_cast<RestingContact*>(data)->removal = arbiter.isRemoval();
+    };
+    world.registerHandler(1, handler);
+    world.addDefaultCollisionHandler(1);
+    world.step(kTick<S>);
+    for (const ShapeId id : {a, b}) world.setType(bodyOf(world, id), BodyType::staticBody);
+    for (int i = 0; i < 6; ++i) world.step(kTick<S>);
+  }
+  void steps(int count) {
+    for (int i = 0; i < count; ++i) world.step(kTick<S>);
+  }
+};
+
+/// What ends the contact of two static discs.
+template <Scalar S>
+struct EndOfRest {
+  const char* name;
+  void (*act)(RestingContact<S>&);
+};
+
+template <Scalar S>
+std::vector<EndOfRest<S>> endsOfRest() {
+  using R = RestingContact<S>;
+  return {
+      {"moved",
+       [](R& r) {
+         r.world.body(bodyOf(r.world, r.b)).setPosition({S(20), S(0)});
+       }},
+      {"moved a little",
+       [](R& r) {
+         r.world.body(bodyOf(r.world, r.b)).setPosition({ratio<S>(201, 100), S(0)});
+       }},
+      {"filtered", [](R& r) { r.world.change(r.a, [](Shape<S>& s) {
+                                s.setFilter({0, 1, 0});
+                              }); }},
+      {"one group",
+       [](R& r) {
+         for (const ShapeId id : {r.a, r.b}) r.world.change(id, [](Shape<S>& s) { s.setFilter({7, 1, 1}); });
+       }},
+      {"smaller",
+       [](R& r) { r.world.change(r.b, [](Shape<S>& s) { CircleShape<S>(s).setRadius(ratio<S>(1, 64)); }); }},
+      {"replaced",
+       [](R& r) {
+         r.world.replace(r.b, circleShape<S>(bodyOf(r.world, r.b), S(1), {S(4), S(0)}));
+       }},
+      {"a sensor, then moved",
+       [](R& r) {
+         r.world.change(r.b, [](Shape<S>& s) { s.setSensor(true); });
+         r.world.step(kTick<S>);
+         EXPECT_EQ(r.separates, 0);
+         r.world.body(bodyOf(r.world, r.b)).setPosition({S(20), S(0)});
+       }},
+      {"kinematic and moved",
+       [](R& r) {
+         r.world.setType(bodyOf(r.world, r.b), BodyType::kinematicBody);
+         r.world.body(bodyOf(r.world, r.b)).setPosition({S(20), S(0)});
+       }},
+  };
+}
+
+TYPED_TEST(HandlersTest, AStaticContactThatEndsIsToldOnceAndLeavesNoPair) {
+  using S = TypeParam;
+  for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {
+    for (const EndOfRest<S>& end : endsOfRest<S>()) {
+      RestingContact<S> rest(solver);
+      ASSERT_EQ(rest.world.state().pairs.size(), 1u) << end.name;
+      EXPECT_EQ(rest.separates, 0) << end.name;
+      end.act(rest);
+      rest.steps(1);
+      EXPECT_EQ(rest.separates, 1) << end.name;
+      EXPECT_FALSE(rest.removal) << end.name;
+      rest.steps(4);
+      EXPECT_EQ(rest.separates, 1) << end.name;
+      EXPECT_TRUE(rest.world.state().pairs.empty()) << end.name;
+      EXPECT_EQ(rest.begins, 1) << end.name;
+    }
+  }
+}
+
+TYPED_TEST(HandlersTest, AStaticContactWhoseShapeGoesIsToldOnceAsARemoval) {
+  using S = TypeParam;
+  for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {
+    RestingContact<S> rest(solver);
+    rest.world.remove(rest.b);
+    EXPECT_EQ(rest.separates, 1);
+    EXPECT_TRUE(rest.removal);
+    rest.steps(3);
+    EXPECT_EQ(rest.separates, 1);
+    EXPECT_TRUE(rest.world.state().pairs.empty());
+  }
+}
+
+// A contact that had ended before both were static is kept as long as any.
+TYPED_TEST(HandlersTest, AnEndedContactExpiresThoughBothBodiesAreStaticByThen) {
+  using S = TypeParam;
+  for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {
+    RestingContact<S> rest(solver, 5);
+    for (const ShapeId id : {rest.a, rest.b}) {
+      rest.world.setType(bodyOf(rest.world, id), BodyType::dynamicBody);
+    }
+    rest.steps(1);
+    rest.world.body(bodyOf(rest.world, rest.b)).setPosition({S(20), S(0)});
+    rest.steps(1);
+    ASSERT_EQ(rest.world.state().pairs.size(), 1u);
+    // Back in place, but as a static body: that makes no contact.
+    rest.world.body(bodyOf(rest.world, rest.b)).setPosition({S(1), S(0)});
+    for (const ShapeId id : {rest.a, rest.b})
+      rest.world.setType(bodyOf(rest.world, id), BodyType::staticBody);
+    rest.steps(5);
+    EXPECT_TRUE(rest.world.state().pairs.empty());
+    EXPECT_EQ(rest.separates, 1);
+  }
+}
+
+TYPED_TEST(HandlersTest, ContactsThatAreIgnoredEndOnceToo) {
+  using S = TypeParam;
+  Recorder<S>& h = this->bindPair("h", 1, 2);
+  h.beginAnswer = false;
+  const ShapeId a = this->disc(S(0), 1, 10);
+  const ShapeId b = this->disc(S(1), 2, 20);
+  EXPECT_THAT(this->step(), ElementsAre("h.begin(10,20)"));
+  for (const ShapeId id : {a, b}) this->world_.setType(bodyOf(this->world_, id), BodyType::staticBody);
+  for (int i = 0; i < 6; ++i) EXPECT_THAT(this->step(), IsEmpty());
+  this->moveTo(b, S(10));
+  EXPECT_THAT(this->step(), ElementsAre("h.separate(10,20)"));
+  for (int i = 0; i < 6; ++i) EXPECT_THAT(this->step(), IsEmpty());
+  EXPECT_TRUE(this->world_.state().pairs.empty());
 }
 
 // The order of everything is that of the shapes' ids, whatever the order of adding or the places.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <samestep/snapshot.h>
 #include <samestep/space.h>
 
 #include <limits>
@@ -803,6 +804,106 @@ TYPED_TEST(SpaceTest, APostStepCallbackThatThrowsDelaysTheOthers) {
 
   space.step(kTick<S>);
   EXPECT_EQ(log.keys, (std::vector<std::uint64_t>{1, 3}));
+}
+
+/// A Space whose one callback waits: it was unlocked without running any.
+template <class S>
+void leaveWaiting(Space<S>& space, Log<S>& log) {
+  space.lock();
+  space.addPostStepCallback(Log<S>::note, 1, &log);
+  space.unlock(false);
+}
+
+TYPED_TEST(SpaceTest, PostStepCallbacksThatWaitForAWorldThatIsReplacedAreDropped) {
+  using S = TypeParam;
+  auto& space = this->space_;
+  const SavedSpace<S> saved = space.save();
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(saveSnapshot(space, {})));
+  saveSnapshot(space, bytes);
+  const auto expectDropped = [&](const char* how, auto&& replace) {
+    Log<S> log;
+    leaveWaiting(space, log);
+    replace();
+    space.step(kTick<S>);
+    EXPECT_TRUE(log.keys.empty()) << how;
+    space.lock();
+    EXPECT_TRUE(space.addPostStepCallback(Log<S>::note, 1, &log)) << how;  // Its key is free again.
+    space.unlock(true);
+    EXPECT_EQ(log.keys, (std::vector<std::uint64_t>{1})) << how;
+  };
+  expectDropped("restore", [&] { space.restore(saved); });
+  expectDropped("load", [&] { loadSnapshot<S>(space, bytes); });
+  expectDropped("adopt a copy", [&] { space.adopt(saved.state()); });
+  expectDropped("adopt", [&] { space.adopt(WorldState<S>(saved.state())); });
+}
+
+TYPED_TEST(SpaceTest, PostStepCallbacksWaitOnWhereAWorldIsNotReplaced) {
+  using S = TypeParam;
+  auto& space = this->space_;
+  Log<S> log;
+  leaveWaiting(space, log);
+  EXPECT_THROW(space.restore(SavedSpace<S>()), ForeignWorld);
+  EXPECT_THROW(loadSnapshot<S>(space, {}), FormatError);
+  space.step(kTick<S>);
+  EXPECT_EQ(log.keys, (std::vector<std::uint64_t>{1}));
+}
+
+TYPED_TEST(SpaceTest, APostStepCallbackThatRestoresDropsThoseAfterItAndMayAddOthers) {
+  using S = TypeParam;
+  auto& space = this->space_;
+  struct Context {
+    SavedSpace<S> saved;
+    Log<S> log;
+  } context{space.save(), {}};
+  space.step(kTick<S>);
+  space.lock();
+  space.addPostStepCallback(Log<S>::note, 1, &context.log);
+  space.addPostStepCallback(
+      [](Space<S>& of, std::uint64_t, void* data) {
+        auto* c = static_cast<Context*>(data);
+        of.restore(c->saved);
+        EXPECT_TRUE(of.addPostStepCallback(Log<S>::note, 3, &c->log));
+        EXPECT_TRUE(of.addPostStepCallback(Log<S>::note, 5, &c->log));
+      },
+      2, &context);
+  space.addPostStepCallback(Log<S>::note, 3, &context.log);
+  space.addPostStepCallback(Log<S>::note, 4, &context.log);
+  space.unlock(true);
+  EXPECT_EQ(context.log.keys, (std::vector<std::uint64_t>{1, 3, 5}));
+  EXPECT_EQ(space.stamp(), 0u);
+  space.step(kTick<S>);
+  EXPECT_EQ(context.log.keys.size(), 3u);
+}
+
+TYPED_TEST(SpaceTest, PostStepCallbacksOfARefusedStepAreDropped) {
+  using S = TypeParam;
+  for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {
+    Space<S> space;
+    space.setSolver(solver);
+    struct Context {
+      Space<S>& space;
+      Log<S> log;
+    } context{space, {}};
+    Log<S>& log = context.log;
+    space.registerPositionFunc(
+        1,
+        [](Body<S>&, S, void* data) {
+          auto* c = static_cast<Context*>(data);
+          EXPECT_TRUE(c->space.addPostStepCallback(Log<S>::note, 2, &c->log));
+        },
+        &context);
+    const ShapeId a = addDisc<S>(space, {}, S(1), S(1));
+    addDisc<S>(space, {S(1), S(0)}, S(1), S(1));
+    space.body(bodyOf(space, a)).setPositionFunc(1);
+    leaveWaiting(space, log);  // From before: this one stays.
+    space.setMaxPairs(0);
+    EXPECT_THROW(space.step(kTick<S>), TooManyPairs);
+    EXPECT_TRUE(log.keys.empty());
+    space.setMaxPairs(1);
+    space.body(bodyOf(space, a)).setPositionFunc(0);
+    space.step(kTick<S>);
+    EXPECT_EQ(log.keys, (std::vector<std::uint64_t>{1}));
+  }
 }
 
 // A callback of the removal wants to remove the same shape once more: it has to wait until it is gone.

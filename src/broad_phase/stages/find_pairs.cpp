@@ -9,12 +9,6 @@ namespace samestep {
 
 namespace {
 
-/// Whether two shapes whose boxes overlap may collide at all.
-template <Scalar S>
-[[gnu::always_inline]] inline bool mayCollide(const ShapeTraits<S>& a, const ShapeTraits<S>& b) {
-  return a.body != b.body && accepts(a.filter, b.filter);
-}
-
 /// Of a pair, by which pairs are sorted.
 std::uint64_t sortKey(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
 
@@ -82,8 +76,7 @@ std::uint32_t FindPairs<S>::mergePairs(StepContext<S>& step) {
   // Its boxes came apart: only a contact that may come back is kept, and one whose end is still to be told.
   const auto leave = [&] {
     const Pair<S>& pair = pairs[old];
-    const bool forgotten =
-        pair.state == ArbiterState::cached && pair.age + 1 >= persistence && !step.rests(pair);
+    const bool forgotten = pair.state == ArbiterState::cached && pair.age + 1 >= persistence;
     if (pair.state == ArbiterState::apart || forgotten) {
       ++old;
     } else {

@@ -135,6 +135,25 @@ bool UpdateContacts<S>::applyCollision(StepContext<S>& step, Pair<S>& pair) {
   return ContactCallbacks<S>::ask(step, pair);
 }
 
+/// Whether two static shapes that touched while one of them moved still do. Nothing looks for such pairs:
+/// they are kept, as they are, for when one moves again.
+template <Scalar S>
+bool UpdateContacts<S>::staysInTouch(const StepContext<S>& step, const Pair<S>& pair) {
+  if (pair.state == ArbiterState::cached) return false;
+  const Derived<S>& derived = step.derived;
+  const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
+  if (!mayCollide(shapeA, shapeB)) return false;
+  const PlacedShape<S>&placedA = derived.placed[pair.a.index], &placedB = derived.placed[pair.b.index];
+  const S margin = shapeA.sensor || shapeB.sensor ? S(0) : step.pairMargin();
+  if (!intersects(inflate(placedA.box, margin), placedB.box)) return false;
+  const CollisionInfo<S> info = collide(placedA, placedB, pair.collisionId, nullptr, margin);
+  if (margin == S(0)) return info.count > 0;
+  for (int i = 0; i < info.count; ++i) {
+    if (dot(info.points[i].pointB - info.points[i].pointA, info.normal) <= S(0)) return true;
+  }
+  return false;
+}
+
 template <Scalar S>
 void UpdateContacts<S>::expirePairs(StepContext<S>& step, const std::uint8_t* overlapping) {
   auto& pairs = step.state.pairs;
@@ -142,7 +161,7 @@ void UpdateContacts<S>::expirePairs(StepContext<S>& step, const std::uint8_t* ov
   for (std::size_t i = 0; someLeft_ && i < pairs.size(); ++i) {
     if (left_[i] == 0) continue;
     Pair<S>& pair = pairs[i];
-    if (step.rests(pair)) continue;
+    if (step.rests(pair) && staysInTouch(step, pair)) continue;
     if (pair.state != ArbiterState::cached) {
       pair.state = ArbiterState::cached;
       ContactCallbacks<S>::separate(step, pair, false);

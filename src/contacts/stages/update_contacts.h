@@ -31,6 +31,7 @@ class UpdateContacts {
   /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
   /// MIS: spaceArbiterSetFilter
   void expirePairs(StepContext<S>& step, const std::uint8_t* overlapping);
+  static bool staysInTouch(const StepContext<S>& step, const Pair<S>& pair);
   static void dropApart(StepContext<S>& step, const std::uint8_t* overlapping, std::size_t first);
 
   // Of each pair: whether it touched before and does not now.
