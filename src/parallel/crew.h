@@ -95,7 +95,7 @@ class Crew {
   /// The ranges that one worker starts with, of which others may take: how many are taken, how many there
   /// are, and of which round, in 8, 8 and 16 bits. Whoever takes one has seen all that belongs to its round,
   /// which does not end before that range does. Rounds do not come again within one during(): a step makes
-  /// some 13000 of them at the most.
+  /// some 33000 of them at the most.
   struct alignas(64) Section {
     std::atomic<std::uint32_t> left{0};
   };

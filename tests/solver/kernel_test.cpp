@@ -59,6 +59,7 @@ constexpr std::uint32_t kBlocks = 9;
 template <class N>
 struct Work {
   std::vector<SoftBody<N>> bodies{kBodies};
+  std::vector<SoftBody<N>> pushes{kBodies};
   std::vector<SoftDrive<N>> drives{kBodies};
   std::vector<SoftMarks> marks{kBodies};
   std::vector<ContactBlock<N>> blocks{kBlocks};
@@ -79,6 +80,7 @@ struct Work {
       left |= passes.drive(bodies.data(), drives.data(), marks.data(), kBodies, constants);
       left |= springs(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
       left |= passes.solve(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
+      left |= passes.push(blocks.data(), rests.data(), kBlocks, pushes.data(), constants);
       left |= passes.move(bodies.data(), drives.data(), marks.data(), kBodies, constants);
       left |= passes.relax(blocks.data(), rests.data(), kBlocks, bodies.data(), constants);
     }
@@ -232,6 +234,9 @@ Work<N> randomWork(Source& from) {
     }
     body.moved[3] = from.bend();
   }
+  for (auto& body : work.pushes) {
+    for (int k = 0; k < 3; ++k) body.velocity[k] = from.speed();
+  }
   for (auto& drive : work.drives) {
     for (int k = 0; k < 3; ++k) {
       drive.push[k] = from.push();
@@ -264,6 +269,8 @@ Work<N> randomWork(Source& from) {
       mark(block.roundA, random.oneIn(3));
       mark(block.roundB, random.oneIn(3));
       mark(block.stiff, standsA || standsB);
+      mark(block.stays, i % 2 == 0 && random.oneIn(3));
+      mark(block.pushed, (block.stays >> lane & 1) != 0 && random.oneIn(2));
       block.count[lane] = static_cast<std::uint8_t>(random.between(1, 2));
       block.points = std::max(block.points, block.count[lane]);
       block.normalX[lane] = from.unit();
@@ -390,6 +397,7 @@ TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange
       // What has left the range is worth nothing.
       if (left) continue;
       ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.pushes, expected.pushes)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.drives, expected.drives)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.marks, expected.marks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
@@ -416,6 +424,7 @@ TEST(WideKernelTest, EveryKernelGivesTheBitsOfCheckedNumbersWhichReportNothing) 
       Work<WideNumbers> work = start;
       ASSERT_EQ(work.run(*passes), 0u);
       ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.pushes, expected.pushes)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.drives, expected.drives)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.marks, expected.marks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;
@@ -452,6 +461,7 @@ TEST(DoubleKernelTest, EveryKernelGivesTheSameBits) {
       Work<Doubles> work = start;
       ASSERT_EQ(work.run(*passes), 0u);
       ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
+      ASSERT_TRUE(sameBytes(work.pushes, expected.pushes)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.drives, expected.drives)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.marks, expected.marks)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.blocks, expected.blocks)) << name << ", seed " << seed;

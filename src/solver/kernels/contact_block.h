@@ -143,8 +143,9 @@ struct alignas(64) ContactBlock {
   /// Points of each lane, and the most of them.
   std::uint8_t count[N::kLanes], points;
   /// A bit per lane: whether contacts leave A or B as it is; whether its surface is round, so that turning
-  /// does not move it; whether the contact is one with a body that nothing moves.
-  std::uint16_t fixedA, fixedB, roundA, roundB, stiff;
+  /// does not move it; whether the contact is one with a body that nothing moves; whether springs do
+  /// not push it apart; and whether velocities of pushing do, see BlockSolver::run.
+  std::uint16_t fixedA, fixedB, roundA, roundB, stiff, stays, pushed;
   /// Whether any point bounces; whether any strikes: approaches fast and holds nothing yet.
   std::uint8_t bounces, strikes;
   /// Of 32 bits: the friction is 2^this times what is written, where that does not hold it.
@@ -168,6 +169,8 @@ template <class N>
 struct alignas(64) BlockRest {
   /// The sums added up over the substeps.
   typename N::Sum normalTotal[2][N::kLanes], tangentTotal[2][N::kLanes];
+  /// Accumulated u of the pushing apart, m/s: of pairs that are pushed.
+  typename N::Sum pushSum[2][N::kLanes];
   /// What a bounce shall leave, m/s; 0 for none.
   typename N::Sum bounce[2][N::kLanes];
   /// Which pair of the Space each lane is; kNoPair for an empty one.
@@ -227,6 +230,8 @@ struct SoftPasses {
   ContactPass<N> start, solve;
   /// Without; adds the substep's sums to the totals.
   ContactPass<N> relax;
+  /// Pushes pairs apart: the bodies' velocities are those of pushing.
+  ContactPass<N> push;
   /// Gives bodies the velocities of a substep before contacts, and once more what contacts gave in the last.
   BodyPass<N> drive;
   /// Moves them.

@@ -3,7 +3,9 @@
 
 #include <samestep/high_water.h>
 
+#include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "base/require_ieee.h"
 #include "contacts/contact_row.h"
@@ -65,6 +67,12 @@ void clearPoint(ContactBlock<N>& block, BlockRest<N>& rest, BlockInput<N>& in, i
 [[gnu::always_inline]] inline std::int32_t momentPart(std::int32_t share, std::int32_t moment) {
   return static_cast<std::int32_t>(units::rounded<IntegerUnits::kUnitBits>(std::int64_t{share} * moment));
 }
+
+/// A pair is pushed apart where it overlaps so many times deeper than a spring that carries what it does.
+constexpr int kCarriedTimes = 64;
+/// And by more than this, m: what overlaps less stays where it is.
+template <Scalar S>
+inline constexpr S kUnpushed = ratio<S>(1, 1 << 10);
 
 /// How often springs are solved once more where something strikes.
 constexpr int kMorePasses = 2;
@@ -145,7 +153,7 @@ template <Scalar S, class N>
 void BlockSolver<S, N>::openBlock(std::uint32_t at, int pairs, Taken& taken) {
   Block& block = blocks_[at];
   block.points = block.bounces = block.strikes = block.frictionShift = 0;
-  block.roundA = block.roundB = block.stiff = 0;
+  block.roundA = block.roundB = block.stiff = block.stays = block.pushed = 0;
   block.fixedA = block.fixedB = 0;
   for (int lane = pairs; lane < N::kLanes; ++lane) clearLane(at, lane, taken);
 }
@@ -253,7 +261,26 @@ template <Scalar S, class N>
 bool BlockSolver<S, N>::closeBlock(std::uint32_t at, int pairs, S bounceThreshold, const Taken& taken) {
   bool fits = passes_.prepare(taken.input, blocks_[at], bodies_.data()) == 0;
   for (int lane = 0; lane < pairs; ++lane) fits &= placePoints(at, lane, bounceThreshold, taken);
+  if (blocks_[at].pushed != 0) {
+    for (auto& sums : rests_[at].pushSum) std::fill(std::begin(sums), std::end(sums), typename N::Sum(0));
+  }
   return fits;
+}
+
+/// Marks a pair that carries nothing, or overlaps far more than what it carries explains, as one that springs
+/// do not push apart.
+template <Scalar S, class N>
+inline void BlockSolver<S, N>::markPushed(Block& block, int lane, const Pair<S>& pair, S overlap) const {
+  S carried = S(0);
+  for (int i = 0; i < pair.count; ++i) carried = max(carried, pair.contacts[i].normalSpeed);
+  if (carried > S(0)) {
+    if (overlap <= kUnpushed<S>) return;
+    const Softness<S>& soft = settings_->softness[block.stiff >> lane & 1];
+    const S explained = min(carried, S(1 << 14)) * (soft.impulseScale * S(kCarriedTimes));
+    if (min(overlap, S(1)) * soft.biasRate * soft.massScale <= explained) return;
+  }
+  block.stays = static_cast<std::uint16_t>(block.stays | 1 << lane);
+  if (overlap > kUnpushed<S>) block.pushed = static_cast<std::uint16_t>(block.pushed | 1 << lane);
 }
 
 /// Fills what a pair takes from where its bodies are, which 32 bits do not hold, and how fast.
@@ -269,6 +296,7 @@ bool BlockSolver<S, N>::placePoints(std::uint32_t at, int lane, S bounceThreshol
   block.surface[lane] =
       pair.surfaceVelocity == Vector<S>() ? Speed(0) : units_.speed(cross(n, pair.surfaceVelocity), misfit);
   const bool near = !kIntegers || max(a.radiusBits, b.radiusBits) <= kNearBits;
+  S overlap = S(0);
   for (int i = 0; i < pair.count; ++i) {
     const Contact<S>& contact = pair.contacts[i];
     const auto& tangent = block.point[i].tangent;
@@ -280,11 +308,13 @@ bool BlockSolver<S, N>::placePoints(std::uint32_t at, int lane, S bounceThreshol
       apart = dot(n, between + (rotate(b.arm(contact.anchorB), b.rotation) -
                                 rotate(a.arm(contact.anchorA), a.rotation)));
     }
+    overlap = max(overlap, -apart);
     block.point[i].separation[lane] = units_.way(clamp(apart, S(-(1 << 10)), S(1 << 10)));
     if (pair.elasticity != S(0) || contact.normalSpeed == S(0)) {
       rests_[at].bounce[i][lane] = units_.sum(bounceOf(block, lane, i, bounceThreshold, taken), misfit);
     }
   }
+  markPushed(block, lane, pair, overlap);
   return misfit == 0;
 }
 
@@ -343,24 +373,55 @@ void BlockSolver<S, N>::tellKept(std::uint32_t begin, std::uint32_t end) {
 }
 
 template <Scalar S, class N>
-bool BlockSolver<S, N>::run(bool strikes, Crew& crew) {
+void BlockSolver<S, N>::addPushes(std::uint32_t begin, std::uint32_t end) {
+  for (std::uint32_t i = begin; i < end; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Speed own = bodies_[i].velocity[k];
+      pushes_[i].moved[k] = own;
+      bodies_[i].velocity[k] = static_cast<Speed>(own + pushes_[i].velocity[k]);
+    }
+  }
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::takePushes(std::uint32_t begin, std::uint32_t end) {
+  for (std::uint32_t i = begin; i < end; ++i) {
+    for (int k = 0; k < 3; ++k) bodies_[i].velocity[k] = pushes_[i].moved[k];
+  }
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::run(bool strikes, bool pushes, Crew& crew) {
   const auto count = static_cast<std::uint32_t>(bodies_.size());
   Finding left;
-  const auto pass = [&](ContactPass<N> kernel) {
-    left.note(passOverGroups(kernel, blocks_, rests_, *groups_, bodies_, constants_, crew));
+  const auto passOn = [&](ContactPass<N> kernel, std::vector<SoftBody<N>>& bodies) {
+    left.note(passOverGroups(kernel, blocks_, rests_, *groups_, bodies, constants_, crew));
   };
+  const auto pass = [&](ContactPass<N> kernel) { passOn(kernel, bodies_); };
+  const auto eachBody = [&](auto&& part) { crew.each(count, kBodyGrain, part); };
   const auto bodyPass = [&](BodyPass<N> kernel) {
-    crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) {
+    eachBody([&](std::uint32_t begin, std::uint32_t end) {
       left.note(kernel(bodies_.data() + begin, drives_.data() + begin, marks_.data() + begin, end - begin,
                        constants_) != 0);
     });
   };
-  crew.each(count, kBodyGrain, [&](std::uint32_t begin, std::uint32_t end) { tellKept(begin, end); });
+  eachBody([&](std::uint32_t begin, std::uint32_t end) { tellKept(begin, end); });
+  if (pushes) {
+    pushes_.resize(count);
+    eachBody([&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t i = begin; i < end; ++i) pushes_[i] = {};
+    });
+  }
   for (int i = 0; i < settings_->substeps; ++i) {
     bodyPass(passes_.drive);
     pass(i == 0 ? passes_.start : passes_.solve);
     for (int more = 0; strikes && more < kMorePasses; ++more) pass(passes_.solve);
+    if (pushes) {
+      passOn(passes_.push, pushes_);
+      eachBody([&](std::uint32_t begin, std::uint32_t end) { addPushes(begin, end); });
+    }
     bodyPass(passes_.move);
+    if (pushes) eachBody([&](std::uint32_t begin, std::uint32_t end) { takePushes(begin, end); });
     pass(passes_.relax);
     if (left) return false;
   }

@@ -51,11 +51,17 @@ class BlockSolver {
   /// Whether any point of the block may bounce; whether any strikes.
   bool bounces(std::uint32_t at) const { return blocks_[at].bounces != 0; }
   bool strikes(std::uint32_t at) const { return blocks_[at].strikes != 0; }
+  /// Whether any pair of the block is pushed apart.
+  bool pushes(std::uint32_t at) const { return blocks_[at].pushed != 0; }
   /// Makes all substeps.
   /// @param strikes  whether any point does: nothing kept from the last step says yet how the blow goes on
   ///                 through a pile, so that springs are solved three times in each substep
+  /// @param pushes   whether any pair is pushed apart: overlaps that no weight holds move bodies by
+  /// velocities
+  ///                 that are forgotten at the end of the step, for what springs leave of theirs in a
+  ///                 velocity stays there for ever
   /// @return false where a number left the range on the way: nothing is then worth anything
-  bool run(bool strikes, Crew& crew);
+  bool run(bool strikes, bool pushes, Crew& crew);
   /// After the last one: what bounces.
   void bounce();
   SoftMotion<S> motion(std::uint32_t body) const;
@@ -73,6 +79,9 @@ class BlockSolver {
   S bounceOf(Block& block, int lane, int point, S bounceThreshold, const Taken& taken) const;
   void tellKept(std::uint32_t begin, std::uint32_t end);
   void setFriction(Block& block, int lane, S friction);
+  void markPushed(Block& block, int lane, const Pair<S>& pair, S overlap) const;
+  void addPushes(std::uint32_t begin, std::uint32_t end);
+  void takePushes(std::uint32_t begin, std::uint32_t end);
   void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
 
   const SoftSettings<S>* settings_ = nullptr;
@@ -84,6 +93,8 @@ class BlockSolver {
   std::vector<SoftBody<N>> bodies_;
   std::vector<SoftDrive<N>> drives_;
   std::vector<SoftMarks> marks_;
+  /// The velocities of pushing apart; what the bodies' own are while these are added to them.
+  std::vector<SoftBody<N>> pushes_;
   /// Of integers: inverse moment times mass by the squared radius, in units of spins.
   std::vector<std::int32_t> moments_;
   BlockMemory* memory_;

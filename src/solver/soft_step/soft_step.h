@@ -88,8 +88,8 @@ struct SoftStep {
   std::vector<BlockGroup> groups;
   /// No kept impulse is larger, as a speed of the lighter body, m/s; asked for where 32 bits are to do.
   S mostKept{};
-  /// Whether any contact may bounce, whether any strikes: see BlockSolver.
-  bool bounces = false, strikes = false;
+  /// Whether any contact may bounce, whether any strikes, whether any is pushed apart: see BlockSolver.
+  bool bounces = false, strikes = false, pushes = false;
   SoftSolvers<S> solvers;
 
   /// Forgets the last step.

@@ -13,9 +13,13 @@ namespace {
 /// @tparam P  with which their coefficients are prepared
 /// @tparam R  with which bodies are moved: lanes that fit the four numbers of one
 template <class L, class P = L, class R = L>
-inline constexpr SoftPasses<typename L::Numbers> kPassesOf = {
-    prepareBlock<P, L>,       passOver<L, Pass::start>, passOver<L, Pass::solve>,
-    passOver<L, Pass::relax>, driveBodies<R>,           moveBodies<R>};
+inline constexpr SoftPasses<typename L::Numbers> kPassesOf = {prepareBlock<P, L>,
+                                                              passOver<L, Pass::start>,
+                                                              passOver<L, Pass::solve>,
+                                                              passOver<L, Pass::relax>,
+                                                              pushOver<L>,
+                                                              driveBodies<R>,
+                                                              moveBodies<R>};
 
 }  // namespace
 }  // namespace samestep

@@ -21,7 +21,8 @@ enum class Pass { start, solve, relax };
 /// One pair of each lane. With springs friction comes first, against the normal impulses so far, and the
 /// normals have the last word; without them friction comes last, against what the normals then are, since it
 /// would otherwise be held by impulses that relaxing is about to lower.
-template <class L, Pass kPass, class N = typename L::Numbers>
+/// @tparam kStays  whether there are pairs in the block that springs do not push apart
+template <class L, Pass kPass, bool kStays, class N = typename L::Numbers>
 [[gnu::always_inline]] inline void solveLanes(ContactBlock<N>& block, BlockRest<N>& rest, int lane,
                                               SoftBody<N>* bodies, const SoftConstants<N>& constants,
                                               L& lanes) {
@@ -108,7 +109,9 @@ template <class L, Pass kPass, class N = typename L::Numbers>
         correction = L::product(mass, lanes.checked(speed + L::greater(target, L::zero())));
       } else {
         const auto soft = L::softness(block.stiff, lane, constants.softness);
-        const V full = L::product(mass, lanes.checked(speed + target));
+        V wanted = target;
+        if constexpr (kStays) wanted = L::greater(target, L::unless(block.stays, lane, target));
+        const V full = L::product(mass, lanes.checked(speed + wanted));
         correction = L::select(L::above(target, L::zero()), full, L::soften(soft, full, before));
       }
       const V sum = lanes.checked(L::pushing(before - correction, constants));
@@ -151,7 +154,68 @@ std::uint64_t passOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32
   for (std::uint32_t i = 0; i < count; ++i) {
     for (int lane = 0; lane < N::kLanes; lane += L::kWidth) {
       if (L::kWidth < N::kLanes && blocks[i].count[lane] == 0) break;
-      solveLanes<L, kPass>(blocks[i], rests[i], lane, bodies, constants, lanes);
+      if (kPass != Pass::relax && blocks[i].stays != 0) {
+        solveLanes<L, kPass, kPass != Pass::relax>(blocks[i], rests[i], lane, bodies, constants, lanes);
+      } else {
+        solveLanes<L, kPass, false>(blocks[i], rests[i], lane, bodies, constants, lanes);
+      }
+    }
+  }
+  return lanes.left();
+}
+
+/// One pair of each lane that is pushed apart: without springs, and with velocities that no body keeps.
+template <class L, class N = typename L::Numbers>
+[[gnu::always_inline]] inline void pushLanes(const ContactBlock<N>& block, BlockRest<N>& rest, int lane,
+                                             SoftBody<N>* bodies, const SoftConstants<N>& constants,
+                                             L& lanes) {
+  using V = typename L::V;
+  using C = typename L::C;
+  LaneMotion<L> velocityA, velocityB;
+  L::gatherVelocity(bodies, block.bodyA + lane, velocityA.x, velocityA.y, velocityA.turn);
+  L::gatherVelocity(bodies, block.bodyB + lane, velocityB.x, velocityB.y, velocityB.turn);
+  const C nx = L::coefficient(block.normalX + lane);
+  const C ny = L::coefficient(block.normalY + lane);
+  V normalSpeed = L::dot2(nx, velocityB.x - velocityA.x, ny, velocityB.y - velocityA.y);
+  V normalPart = L::zero();
+  const int left = static_cast<std::uint16_t>(~block.pushed);
+  const int points = L::pointsOf(block, lane);
+  for (int i = 0; i < points; ++i) {
+    const auto& axis = block.point[i].normal;
+    const C armA = L::coefficient(axis.armA + lane);
+    const C armB = L::coefficient(axis.armB + lane);
+    const V before = L::load(rest.pushSum[i] + lane);
+    const V target = L::load(block.point[i].target + lane);
+    const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
+    const V correction = L::product(L::coefficient(axis.mass + lane), lanes.checked(speed + target));
+    const V sum = L::unless(left, lane, lanes.checked(L::pushing(before - correction, constants)));
+    L::store(rest.pushSum[i] + lane, sum);
+    const V change = lanes.checkedChange(sum - before);
+    normalSpeed = normalSpeed + change;
+    normalPart = normalPart + change;
+    velocityA.turn = lanes.checkedTurn(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
+    velocityB.turn = lanes.checkedTurn(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
+    L::note("soft step: relative speed", speed);
+  }
+  const C ax = L::coefficient(block.pushAX + lane);
+  const C ay = L::coefficient(block.pushAY + lane);
+  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane,
+                        velocityA.x - L::product(ax, normalPart), velocityA.y - L::product(ay, normalPart),
+                        velocityA.turn);
+  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane,
+                        velocityB.x + L::product(nx - ax, normalPart),
+                        velocityB.y + L::product(ny - ay, normalPart), velocityB.turn);
+}
+
+template <class L, class N = typename L::Numbers>
+std::uint64_t pushOver(ContactBlock<N>* blocks, BlockRest<N>* rests, std::uint32_t count, SoftBody<N>* bodies,
+                       const SoftConstants<N>& constants) {
+  L lanes;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (blocks[i].pushed == 0) continue;
+    for (int lane = 0; lane < N::kLanes; lane += L::kWidth) {
+      if (L::kWidth < N::kLanes && blocks[i].count[lane] == 0) break;
+      pushLanes(blocks[i], rests[i], lane, bodies, constants, lanes);
     }
   }
   return lanes.left();

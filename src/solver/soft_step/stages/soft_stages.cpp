@@ -176,7 +176,7 @@ inline void SoftStages<S>::fetchAhead(const std::vector<Pair<S>>& pairs, std::ui
 template <Scalar S>
 template <class Solver>
 bool SoftStages<S>::fillBlocks(StepContext<S>& step, Solver& solver) {
-  Finding misfit, bounces, strikes;
+  Finding misfit, bounces, strikes, pushes;
   const std::vector<Pair<S>>& pairs = step.state.pairs;
   const S bounceThreshold = step.state.settings.bounceThreshold;
   const auto fillBlock = [&](std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
@@ -193,6 +193,7 @@ bool SoftStages<S>::fillBlocks(StepContext<S>& step, Solver& solver) {
     misfit.note(!solver.closeBlock(block, count, bounceThreshold, taken));
     bounces.note(solver.bounces(block));
     strikes.note(solver.strikes(block));
+    pushes.note(solver.pushes(block));
   };
   step.team.during(step.team.helpsWith(solvedPairs_.size(), StepContext<S>::kFewPairs), [&] {
     std::uint32_t first = 0;
@@ -218,6 +219,7 @@ bool SoftStages<S>::fillBlocks(StepContext<S>& step, Solver& solver) {
   });
   soft_.bounces = static_cast<bool>(bounces);
   soft_.strikes = static_cast<bool>(strikes);
+  soft_.pushes = static_cast<bool>(pushes);
   return !static_cast<bool>(misfit);
 }
 
@@ -227,7 +229,7 @@ void SoftStages<S>::solve(StepContext<S>& step) {
   const auto run = [&](auto& solver) {
     bool solved = false;
     team.during(team.helpsWith(solvedPairs_.size(), StepContext<S>::kFewPairs), [&] {
-      solved = solver.run(soft_.strikes, team);
+      solved = solver.run(soft_.strikes, soft_.pushes, team);
       if (!solved) return;
       if (soft_.bounces) solver.bounce();
       solver.store(step.state.pairs, team);
