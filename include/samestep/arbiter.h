@@ -116,6 +116,10 @@ struct Pair {
     visit("state", self.state);
     visit("manifold", self.manifold);
   }
+  /// The order of a world's list, by the slots of both shapes.
+  static bool before(const Pair& x, const Pair& y) {
+    return x.a.index != y.a.index ? x.a.index < y.a.index : x.b.index < y.b.index;
+  }
 };
 
 /// Two touching shapes, as a callback sees them. MIS section 7.

@@ -9,14 +9,6 @@
 
 namespace samestep {
 
-/// How large a world from outside may be.
-struct WorldLimits {
-  std::uint32_t bodies = 1u << 16;
-  std::uint32_t shapes = 1u << 16;
-  std::uint32_t pairs = kDefaultMaxPairs;
-  std::uint32_t handlers = 1u << 12;
-};
-
 /// Writes the bytes of a world as snapshots and recordings hold it: little-endian, field by field, the same
 /// everywhere, with what a number shares with the record before left out; see docs/formats.md.
 /// @return how many bytes that is; where `into` has less room, its content is of no use

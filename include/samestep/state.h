@@ -7,6 +7,7 @@
 #include <samestep/arbiter.h>
 #include <samestep/body.h>
 #include <samestep/id.h>
+#include <samestep/limits.h>
 #include <samestep/settings.h>
 #include <samestep/shape.h>
 #include <samestep/slot_map.h>
@@ -29,6 +30,26 @@ struct HandlerBinding {
     visit("number", self.number);
     visit("kind", self.kind);
   }
+  /// The order of a world's list.
+  static bool before(const HandlerBinding& a, const HandlerBinding& b) {
+    if (a.kind != b.kind) return a.kind < b.kind;
+    return a.typeA != b.typeA ? a.typeA < b.typeA : a.typeB < b.typeB;
+  }
+};
+
+/// How large a world from outside may be: the records of each section.
+struct WorldLimits {
+  std::uint32_t bodies = 1u << 16;
+  std::uint32_t shapes = 1u << 16;
+  std::uint32_t pairs = kDefaultMaxPairs;
+  std::uint32_t handlers = 1u << 12;
+};
+
+/// A section of a world: records of one kind, as many as there are.
+struct Section {
+  const char* object;                 ///< The name of one of its records in messages: "body".
+  const char* tooMany;                ///< The reason for refusing a world with more of them than allowed.
+  std::uint32_t WorldLimits::*limit;  ///< How many are allowed.
 };
 
 /// Everything the future of a world depends on: hashed, saved, portable.
@@ -43,10 +64,26 @@ struct WorldState {
   /// Bodies of every type. MIS: spaceArrayForBodyType
   SlotMap<Body<S>, BodyId> bodies;
   SlotMap<Shape<S>, ShapeId> shapes;
-  /// Sorted by (a, b).
+  /// Sorted by Pair::before.
   std::vector<Pair<S>> pairs;
-  /// Sorted by (kind, typeA, typeB).
+  /// Sorted by HandlerBinding::before.
   std::vector<HandlerBinding> handlers;
+
+  /// Calls visit(name, field) for each single field and visit(section, records) for each section, in the
+  /// order of the canonical encoding; of several worlds with the fields or records of each. Encoding,
+  /// decoding, checking, hashing, comparing, limits and byte counts go by this list: docs/architecture.md
+  /// says what the record of a new section brings.
+  template <class Visitor, class... Worlds>
+  static void sections(Visitor&& visit, Worlds&... worlds) {
+    visit("settings", worlds.settings...);
+    visit("stamp", worlds.stamp...);
+    visit("timeStep", worlds.timeStep...);
+    visit("staticBody", worlds.staticBody...);
+    visit(Section{"body", "more bodies than allowed", &WorldLimits::bodies}, worlds.bodies...);
+    visit(Section{"shape", "more shapes than allowed", &WorldLimits::shapes}, worlds.shapes...);
+    visit(Section{"pair", "more pairs than allowed", &WorldLimits::pairs}, worlds.pairs...);
+    visit(Section{"handler", "more handlers than allowed", &WorldLimits::handlers}, worlds.handlers...);
+  }
 };
 
 }  // namespace samestep

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <tuple>
 #include <utility>
 
 #include "base/require_ieee.h"
@@ -171,52 +170,71 @@ class Collector {
   std::uint32_t most_;
 };
 
-/// The clock and the like, as a record.
-template <Scalar S>
-struct Frame {
-  const WorldState<S>& world;
+/// A single field of a world, as a record.
+template <class T>
+struct Single {
+  const char* name;
+  const T& value;
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("stamp", self.world.stamp);
-    visit("timeStep", self.world.timeStep);
-    visit("staticBody", self.world.staticBody);
+    visit(self.name, self.value);
   }
 };
 
+template <class T, class IdType>
+std::string nameOf(const Section& section, const SlotMap<T, IdType>&, std::uint32_t slot) {
+  return section.object + (" " + std::to_string(slot));
+}
 template <Scalar S>
-std::string pairName(const Pair<S>& pair) {
-  return "pair of shapes " + std::to_string(pair.a.index) + " and " + std::to_string(pair.b.index);
+std::string nameOf(const Section& section, const SlotMap<Shape<S>, ShapeId>& shapes, std::uint32_t slot) {
+  const std::string shape = section.object + (" " + std::to_string(slot));
+  return shapes.aliveAt(slot) ? shape + " of body " + std::to_string(shapes.valueAt(slot).body().index)
+                              : shape;
 }
-
 template <Scalar S>
-bool pairLess(const Pair<S>& a, const Pair<S>& b) {
-  return std::pair(a.a.index, a.b.index) < std::pair(b.a.index, b.b.index);
+std::string nameOf(const Section& section, const Pair<S>& pair) {
+  return section.object +
+         (" of shapes " + std::to_string(pair.a.index) + " and " + std::to_string(pair.b.index));
+}
+std::string nameOf(const Section& section, const HandlerBinding& binding) {
+  return section.object +
+         (" of types " + std::to_string(binding.typeA) + " and " + std::to_string(binding.typeB));
 }
 
-std::string bindingName(const HandlerBinding& binding) {
-  return "handler of types " + std::to_string(binding.typeA) + " and " + std::to_string(binding.typeB);
-}
+/// Compares the fields and sections of two worlds, side by side.
+class SectionDiff {
+ public:
+  explicit SectionDiff(std::uint32_t most) : all_(most) {}
 
-bool bindingLess(const HandlerBinding& a, const HandlerBinding& b) {
-  return std::tuple(a.kind, a.typeA, a.typeB) < std::tuple(b.kind, b.typeA, b.typeB);
-}
+  template <class T>
+  void operator()(const char* name, const T& a, const T& b) {
+    if constexpr (requires(FieldLister & lister) { T::fields(a, lister); }) {
+      all_.compare(a, b, [&] { return name; });
+    } else {
+      all_.compare(Single<T>{name, a}, Single<T>{name, b}, [] { return "clock"; });
+    }
+  }
+  template <class T, class IdType>
+  void operator()(const Section& section, const SlotMap<T, IdType>& a, const SlotMap<T, IdType>& b) {
+    all_.compareSlots(a, b, [&](const auto& map, std::uint32_t slot) { return nameOf(section, map, slot); });
+  }
+  template <class T>
+  void operator()(const Section& section, const std::vector<T>& a, const std::vector<T>& b) {
+    all_.compareLists(a, b, T::before, [&](const T& record) { return nameOf(section, record); });
+  }
+  std::vector<FieldDifference> found() { return std::move(all_.found); }
+
+ private:
+  Collector all_;
+};
 
 }  // namespace
 
 template <Scalar S>
 std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldState<S>& b, std::uint32_t most) {
-  Collector all(most);
-  all.compare(a.settings, b.settings, [] { return "settings"; });
-  all.compare(Frame<S>{a}, Frame<S>{b}, [] { return "clock"; });
-  all.compareSlots(a.bodies, b.bodies,
-                   [](const auto&, std::uint32_t i) { return "body " + std::to_string(i); });
-  all.compareSlots(a.shapes, b.shapes, [](const auto& shapes, std::uint32_t i) {
-    const std::string shape = "shape " + std::to_string(i);
-    return shapes.aliveAt(i) ? shape + " of body " + std::to_string(shapes.valueAt(i).body().index) : shape;
-  });
-  all.compareLists(a.pairs, b.pairs, pairLess<S>, pairName<S>);
-  all.compareLists(a.handlers, b.handlers, bindingLess, bindingName);
-  return std::move(all.found);
+  SectionDiff diff(most);
+  WorldState<S>::sections(diff, a, b);
+  return diff.found();
 }
 
 namespace {

@@ -42,14 +42,31 @@ SavedSpace<S>::~SavedSpace() {
   delete derived_;
 }
 
+namespace {
+
+/// Counts the bytes of the records of each section.
+struct SectionBytes {
+  std::uint64_t total = 0;
+
+  template <class T>
+  void operator()(const char*, const T&) {}
+  template <class T, class IdType>
+  void operator()(const Section&, const SlotMap<T, IdType>& records) {
+    total += records.slots() * (sizeof(T) + sizeof(std::uint32_t));
+  }
+  template <class T>
+  void operator()(const Section&, const std::vector<T>& records) {
+    total += records.size() * sizeof(T);
+  }
+};
+
+}  // namespace
+
 template <Scalar S>
 std::uint64_t SavedSpace<S>::bytes() const {
-  const auto ofSlots = [](const auto& map) {
-    return map.values().size() * (sizeof(map.values()[0]) + sizeof(std::uint32_t));
-  };
-  return ofSlots(state_.bodies) + ofSlots(state_.shapes) + state_.pairs.size() * sizeof(Pair<S>) +
-         state_.handlers.size() * sizeof(HandlerBinding) + sizeof state_ +
-         (derived_ == nullptr ? 0 : derived_->bytes());
+  SectionBytes records;
+  WorldState<S>::sections(records, state_);
+  return sizeof state_ + records.total + (derived_ == nullptr ? 0 : derived_->bytes());
 }
 
 #define SAMESTEP_EACH_SCALAR template class SavedSpace<S>;

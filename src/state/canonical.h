@@ -112,29 +112,4 @@ class CanonicalWriter {
   Sink& sink_;
 };
 
-// Parts of a world. `Records` has put(record) for anything that a CanonicalWriter can put.
-
-template <class Records, class World>
-void writeFrame(Records& write, const World& world) {
-  write.put(world.settings);
-  write.put(world.stamp);
-  write.put(world.timeStep);
-  write.put(world.staticBody);
-}
-
-template <class Records, class Map>
-void writeSlots(Records& write, const Map& map) {
-  write.put(map.slots());
-  for (std::uint32_t i = 0; i < map.slots(); ++i) {
-    write.put(map.generationAt(i));
-    if (map.aliveAt(i)) write.put(map.valueAt(i));
-  }
-}
-
-template <class Records, class List>
-void writeList(Records& write, const List& list) {
-  write.put(static_cast<std::uint64_t>(list.size()));
-  for (const auto& record : list) write.put(record);
-}
-
 }  // namespace samestep

@@ -5,8 +5,10 @@
 #include <xxhash.h>
 
 #include <cstdint>
+#include <vector>
 
 #include <samestep/kernel.h>
+#include <samestep/state.h>
 
 #include "state/canonical.h"
 #include "state/hash_update.h"
@@ -68,24 +70,58 @@ std::uint64_t hashOf(const T& record) {
   return sink.finish();
 }
 
-/// The hash of all shapes, which change seldom: a Space keeps it until they do.
-template <class Shapes>
-std::uint64_t hashOfShapes(const Shapes& shapes) {
-  HashSink sink;
-  writeSlots(sink, shapes);
-  return sink.finish();
+/// Hashes the sections of a world. The shapes stand in it as a hash of their own: they change seldom, and a
+/// Space keeps theirs until they do.
+class SectionHash {
+ public:
+  explicit SectionHash(std::uint64_t shapesHash = 0) : shapesHash_(shapesHash) {}
+
+  template <class T>
+  void operator()(const char*, const T& field) {
+    sink_.put(field);
+  }
+  template <class T, class IdType>
+  void operator()(const Section&, const SlotMap<T, IdType>& records) {
+    slots(records);
+  }
+  template <Scalar S>
+  void operator()(const Section&, const SlotMap<Shape<S>, ShapeId>&) {
+    sink_.put(shapesHash_);
+  }
+  template <class T>
+  void operator()(const Section&, const std::vector<T>& records) {
+    sink_.put(static_cast<std::uint64_t>(records.size()));
+    for (const T& record : records) sink_.put(record);
+  }
+  template <class T, class IdType>
+  void slots(const SlotMap<T, IdType>& records) {
+    sink_.put(records.slots());
+    for (std::uint32_t i = 0; i < records.slots(); ++i) {
+      sink_.put(records.generationAt(i));
+      if (records.aliveAt(i)) sink_.put(records.valueAt(i));
+    }
+  }
+  std::uint64_t finish() { return sink_.finish(); }
+
+ private:
+  HashSink sink_;
+  std::uint64_t shapesHash_;
+};
+
+/// The hash of all shapes.
+template <Scalar S>
+std::uint64_t hashOfShapes(const SlotMap<Shape<S>, ShapeId>& shapes) {
+  SectionHash hash;
+  hash.slots(shapes);
+  return hash.finish();
 }
 
 /// The hash of a world whose shapes have that hash.
-template <class World>
-std::uint64_t hashOfWorld(const World& world, std::uint64_t shapesHash) {
-  HashSink sink;
-  writeFrame(sink, world);
-  writeSlots(sink, world.bodies);
-  sink.put(shapesHash);
-  writeList(sink, world.pairs);
-  writeList(sink, world.handlers);
-  return sink.finish();
+template <Scalar S>
+std::uint64_t hashOfWorld(const WorldState<S>& world, std::uint64_t shapesHash) {
+  SectionHash hash(shapesHash);
+  WorldState<S>::sections(hash, world);
+  return hash.finish();
 }
 
 }  // namespace samestep

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
-#include <tuple>
 
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
@@ -383,11 +382,9 @@ namespace {
 template <Scalar S>
 void bind(StepContext<S> world, const HandlerBinding& binding) {
   require<Fault::MissingCallback>(world.wiring.has(binding.number));
-  const auto key = [](const HandlerBinding& b) { return std::tuple(b.kind, b.typeA, b.typeB); };
   auto& all = world.state.handlers;
-  const auto place = std::lower_bound(all.begin(), all.end(), binding,
-                                      [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  if (place != all.end() && key(*place) == key(binding)) {
+  const auto place = std::lower_bound(all.begin(), all.end(), binding, HandlerBinding::before);
+  if (place != all.end() && !HandlerBinding::before(binding, *place)) {
     *place = binding;
   } else {
     all.insert(place, binding);
@@ -509,13 +506,33 @@ void checkAdoptable(const Wiring<S>& wiring, const WorldState<S>& state) {
   state.bodies.each([&](BodyId, const Body<S>& body) { wiring.requireCallbacks(body); });
 }
 
+/// Gives the objects of a world, whose records have an id and an owner, to a Space.
+struct GiveTo {
+  std::uint32_t serial;
+
+  template <class T>
+  void operator()(const char*, T&) {}
+  template <class T>
+  void operator()(const Section&, std::vector<T>&) {}
+  template <class T, class IdType>
+  void operator()(const Section&, SlotMap<T, IdType>& objects) {
+    objects.each([&](IdType id, T& object) { give(object, id); });
+  }
+  template <Scalar S>
+  void give(Body<S>& body, BodyId id) {
+    BodyAccess<S>::attach(body, id, serial);
+  }
+  template <Scalar S>
+  void give(Shape<S>& shape, ShapeId id) {
+    shape.attach(id, serial);
+  }
+};
+
 /// Makes a state that came from elsewhere the Space's own.
 template <Scalar S>
 void takeOver(StepContext<S> world) {
   ++world.wiring.worldsBroughtIn;
-  const std::uint32_t serial = world.wiring.serial;
-  world.state.bodies.each([&](BodyId id, Body<S>& body) { BodyAccess<S>::attach(body, id, serial); });
-  world.state.shapes.each([&](ShapeId id, Shape<S>& shape) { shape.attach(id, serial); });
+  WorldState<S>::sections(GiveTo{world.wiring.serial}, world.state);
   world.derived.shapesHashKnown = false;
   world.derived.forget();
   world.events.range.clear();

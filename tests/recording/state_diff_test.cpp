@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/fields.h"
 #include "support/recordings.h"
 #include "support/scalars.h"
 
@@ -55,6 +56,23 @@ TYPED_TEST(StateDiffTest, TellsWhatOnlyOneWorldHas) {
   EXPECT_EQ(found[0].field, "exists");
   EXPECT_EQ(found[0].a, "yes");
   EXPECT_EQ(found[0].b, "no");
+}
+
+TYPED_TEST(StateDiffTest, TellsOfEachSection) {
+  using S = TypeParam;
+  Space<S> space;
+  registerNamedHandlers(space);
+  fillAtRandom(space, 4);
+  space.addWildcardHandler(1, 4);
+  hashesOf(space, 60);
+  int place = 0;
+  for (;; ++place) {
+    WorldState<S> changed = space.state();
+    const std::string name = changeSection(changed, place);
+    if (name.empty()) break;
+    EXPECT_FALSE(differences(space.state(), changed).empty()) << name;
+  }
+  EXPECT_EQ(place, 8);
 }
 
 // They tell which ids come next.

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include <samestep/id.h>
 #include <samestep/scalar.h>
+#include <samestep/state.h>
 #include <samestep/vector.h>
 
 namespace samestep {
@@ -88,6 +90,42 @@ std::string changeLeaf(T& record, int place) {
   LeafVisitor visitor(place);
   T::fields(record, visitor);
   return visitor.changed();
+}
+
+/// Changes the field or section with a given place in the list of a world's sections.
+struct SectionChange {
+  int target;
+  int place = 0;
+  std::string changed{};
+
+  template <class T>
+  void operator()(const char* name, T& field) {
+    if (place++ != target) return;
+    changed = name;
+    LeafVisitor change(0);
+    change(name, field);
+  }
+  template <class T, class IdType>
+  void operator()(const Section& section, SlotMap<T, IdType>& records) {
+    if (place++ != target) return;
+    changed = section.object;
+    changeLeaf(records.valueAt(records.slots() - 1), 0);
+  }
+  template <class T>
+  void operator()(const Section& section, std::vector<T>& records) {
+    if (place++ != target) return;
+    changed = section.object;
+    records.pop_back();
+  }
+};
+
+/// Changes the field or section at a place of a world that has records in each; says which, or nothing past
+/// the last place.
+template <class World>
+std::string changeSection(World& world, int place) {
+  SectionChange change{place};
+  World::sections(change, world);
+  return change.changed;
 }
 
 }  // namespace samestep

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <samestep/state.h>
+
+#include "contacts/contact_row.h"
+
+namespace samestep {
+
+template <Scalar S>
+const char* flawOfSettings(const Settings<S>& settings) {
+  const auto in = [](S value, S low, S high) { return value >= low && value <= high; };
+  const bool both = settings.solver <= SolverKind::softStep && settings.precision <= ContactPrecision::fast &&
+                    within(settings.gravity, kMaxAcceleration<S>) && in(settings.damping, S(0), S(1)) &&
+                    settings.worldExtent > S(0) && settings.worldExtent <= kMaxWorldExtent<S>;
+  const bool sequential = settings.iterations >= 1 && settings.iterations <= 1000 &&
+                          in(settings.collisionSlop, S(0), S(256)) && in(settings.collisionBias, S(0), S(1));
+  const bool soft =
+      settings.substeps >= 1 && settings.substeps <= 100 && in(settings.contactHertz, S(0), S(1000)) &&
+      in(settings.contactDamping, S(0), S(100)) &&
+      in(settings.contactPushSpeed, S(0), kMaxSpeed<S>)&&in(settings.contactMargin, S(0), S(1)) &&
+      in(settings.bounceThreshold, S(0), kMaxSpeed<S>);
+  return both && sequential && soft ? nullptr : "a setting is out of range";
+}
+
+template <Scalar S>
+const char* flawOfContact(const Contact<S>& contact) {
+  // Points of shapes at the end of their range, and those a callback may have set.
+  const S far = S(1 << 23);
+  // A push of the soft step, and what friction may make of it.
+  const bool kept = contact.normalSpeed >= S(0) && contact.normalSpeed <= kMaxSum<S> &&
+                    contact.tangentSpeed > -kMaxForce<S> && contact.tangentSpeed < kMaxForce<S>;
+  const bool good = within(contact.anchorA, far) && within(contact.anchorB, far) && kept;
+  return good ? nullptr : "a contact is out of range";
+}
+
+/// Of normal and points that the next step may solve without colliding the shapes again.
+template <Scalar S>
+const char* flawOfKept(const Pair<S>& pair) {
+  const S far = S(2 * kMaxExtent), slack = ratio<S>(1, 64);
+  const S unit = lengthSq(pair.localNormal);
+  bool good = pair.count > 0 && unit >= S(1) - slack && unit <= S(1) + slack;
+  for (const Contact<S>& contact : pair.contacts) {
+    good = good && within(contact.anchorA, far) && within(contact.anchorB, far);
+  }
+  return good ? nullptr : "a contact that is kept is out of range";
+}
+
+/// Finds what makes fields and records of a world ones that no Space could have. Each kind of field and
+/// record has its flawOf, which answers the reason or null.
+template <Scalar S>
+class WorldCheck {
+ public:
+  /// @param world  its bodies are read before shapes are checked, and its shapes before pairs
+  explicit WorldCheck(const WorldState<S>& world) : world_(world) {}
+
+  const char* flawOf(const Settings<S>& settings) const { return flawOfSettings(settings); }
+  /// The count of steps: any is one that a Space can reach.
+  const char* flawOf(std::uint64_t) const { return nullptr; }
+  const char* flawOf(S timeStep) const {
+    const bool good = timeStep >= S(0) && timeStep <= kMaxTimeStep<S>;
+    return good ? nullptr : "the time step is out of range";
+  }
+  const char* flawOf(BodyId staticBody) const {
+    const Body<S>* body = world_.bodies.find(staticBody);
+    const bool good = body != nullptr && body->type() == BodyType::staticBody;
+    return good ? nullptr : "there is no static body";
+  }
+
+  const char* flawOf(BodyId, const Body<S>& body) const {
+    return body.wellFormed() ? nullptr : "a body is malformed";
+  }
+  /// @param shape  stays where it is as long as this object lives
+  const char* flawOf(ShapeId id, const Shape<S>& shape);
+  const char* flawOf(const Pair<S>& pair) const;
+  const char* flawOf(const HandlerBinding& binding) const {
+    const bool good = binding.kind <= HandlerBinding::Kind::fallback && binding.number != 0;
+    return good ? nullptr : "a handler is malformed";
+  }
+
+ private:
+  bool hasGoodGeometry(const Shape<S>& shape);
+
+  const WorldState<S>& world_;
+  // Worlds have many shapes of one geometry in a row, which is then looked at once.
+  const Shape<S>* last_ = nullptr;
+  S extent_{};
+};
+
+template <Scalar S>
+const char* WorldCheck<S>::flawOf(ShapeId id, const Shape<S>& shape) {
+  if (shape.id() != id) return "a shape has another's id";
+  if (!shape.surfaceWellFormed() || !hasGoodGeometry(shape)) return "a shape is malformed";
+  const Body<S>* body = world_.bodies.find(shape.body());
+  if (body == nullptr) return "a shape is on a body that does not exist";
+  if (body->type() != BodyType::staticBody && extent_ > S(kMaxDynamicExtent)) {
+    return "a shape of a moving body is too large";
+  }
+  return nullptr;
+}
+
+template <Scalar S>
+bool WorldCheck<S>::hasGoodGeometry(const Shape<S>& shape) {
+  if (last_ != nullptr && shape.sameGeometry(*last_)) return true;
+  if (!shape.geometryWellFormed()) return false;
+  last_ = &shape;
+  extent_ = shape.extent();
+  return true;
+}
+
+template <Scalar S>
+const char* WorldCheck<S>::flawOf(const Pair<S>& pair) const {
+  const Shape<S>* a = world_.shapes.find(pair.a);
+  const Shape<S>* b = world_.shapes.find(pair.b);
+  if (a == nullptr || b == nullptr) return "a pair names a shape that does not exist";
+  if (a->body() == b->body()) return "a pair is of one body";
+  if (pair.count > kMaxContactsPerPair || pair.state > ArbiterState::cached ||
+      pair.manifold > Manifold::apart) {
+    return "a pair is malformed";
+  }
+  if (!within(pair.localNormal, ratio<S>(1026, 1024))) return "a pair is out of range";
+  for (const Contact<S>& contact : pair.contacts) {
+    if (const char* flaw = flawOfContact(contact)) return flaw;
+  }
+  return pair.manifold == Manifold::touching ? flawOfKept(pair) : nullptr;
+}
+
+/// Looks for the first flaw of a whole world.
+template <Scalar S>
+class WorldFlaw {
+ public:
+  WorldFlaw(const WorldState<S>& world, const WorldLimits& limits) : check_(world), limits_(limits) {}
+
+  template <class T>
+  void operator()(const char*, const T& field) {
+    if (found == nullptr) found = check_.flawOf(field);
+  }
+  template <class T, class IdType>
+  void operator()(const Section& section, const SlotMap<T, IdType>& records) {
+    if (found == nullptr && records.slots() > limits_.*section.limit) found = section.tooMany;
+    if (found != nullptr) return;
+    records.each([&](IdType id, const T& record) {
+      if (found == nullptr) found = check_.flawOf(id, record);
+    });
+  }
+  template <class T>
+  void operator()(const Section& section, const std::vector<T>& records) {
+    if (found == nullptr && records.size() > limits_.*section.limit) found = section.tooMany;
+    const T* before = nullptr;
+    for (const T& record : records) {
+      if (found != nullptr) return;
+      found = check_.flawOf(record);
+      if (found == nullptr && before != nullptr && !T::before(*before, record)) found = kNotInOrder;
+      before = &record;
+    }
+  }
+
+  static constexpr const char* kNotInOrder = "a list is not in order";
+  const char* found = nullptr;
+
+ private:
+  WorldCheck<S> check_;
+  const WorldLimits& limits_;
+};
+
+}  // namespace samestep

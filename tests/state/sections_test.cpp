@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// The list of sections of a world is complete, and whatever goes by it sees each of them.
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <samestep/error.h>
+#include <samestep/space.h>
+#include <samestep/space_codec.h>
+#include "state/state_hash.h"
+#include "support/fields.h"
+#include "support/scalars.h"
+#include "support/world.h"
+
+namespace samestep {
+namespace {
+
+template <Scalar S>
+class SectionsTest : public ::testing::Test {
+ protected:
+  SectionsTest() {
+    space_.registerHandler(1, {});
+    space_.addWildcardHandler(1, 1);
+    space_.addCollisionHandler(1, 2, 1);
+    for (int i = 0; i < 3; ++i) addDisc<S>(space_, {ratio<S>(3 * i, 2), S(0)}, S(1), S(1));
+    space_.step(kTick<S>);
+  }
+  static std::vector<std::uint8_t> bytesOf(const WorldState<S>& world) {
+    std::vector<std::uint8_t> bytes;
+    encodeWorld(world, bytes);
+    return bytes;
+  }
+  static std::uint64_t hashOfAll(const WorldState<S>& world) {
+    return hashOfWorld(world, hashOfShapes(world.shapes));
+  }
+  /// Calls check(world, name) for worlds each of which differs in one field or section.
+  template <class Check>
+  void eachChanged(Check&& check) {
+    for (int target = 0;; ++target) {
+      WorldState<S> world = space_.state();
+      const std::string changed = changeSection(world, target);
+      if (changed.empty()) return;
+      check(world, changed);
+    }
+  }
+
+  Space<S> space_;
+};
+TYPED_TEST_SUITE(SectionsTest, AllScalars);
+
+TYPED_TEST(SectionsTest, TheListAccountsForEveryByteOfAWorld) {
+  using S = TypeParam;
+  const WorldState<S> world;
+  std::vector<int> visits(sizeof world);
+  const auto note = [&](const auto&, const auto& part) {
+    const auto* first = reinterpret_cast<const std::uint8_t*>(&part);
+    const auto at = static_cast<std::size_t>(first - reinterpret_cast<const std::uint8_t*>(&world));
+    for (std::size_t i = 0; i < sizeof part; ++i) ++visits.at(at + i);
+  };
+  WorldState<S>::sections(note, world);
+  EXPECT_EQ(visits, std::vector<int>(sizeof world, 1));
+}
+
+TYPED_TEST(SectionsTest, EachSectionHasALimitOfItsOwn) {
+  using S = TypeParam;
+  WorldLimits limits{};
+  std::uint32_t sections = 0;
+  const auto count = [&](const auto& section, const auto&) {
+    if constexpr (requires { section.limit; }) limits.*section.limit = ++sections;
+  };
+  WorldState<S>::sections(count, this->space_.state());
+  EXPECT_EQ(sections * sizeof(std::uint32_t), sizeof(WorldLimits));
+  std::uint32_t place = 0;
+  const auto compare = [&](const auto& section, const auto&) {
+    if constexpr (requires { section.limit; }) {
+      EXPECT_EQ(limits.*section.limit, ++place);
+    }
+  };
+  WorldState<S>::sections(compare, this->space_.state());
+}
+
+TYPED_TEST(SectionsTest, TheHashSeesEachOfThem) {
+  const std::uint64_t before = this->hashOfAll(this->space_.state());
+  ASSERT_EQ(before, this->space_.hash());
+  this->eachChanged(
+      [&](const auto& world, const std::string& name) { EXPECT_NE(this->hashOfAll(world), before) << name; });
+}
+
+TYPED_TEST(SectionsTest, TheBytesHoldEachOfThem) {
+  using S = TypeParam;
+  const auto before = this->bytesOf(this->space_.state());
+  std::uint64_t offset = 0;
+  const WorldState<S> back = decodeWorld<S>(before, offset);
+  EXPECT_EQ(offset, before.size());
+  EXPECT_EQ(this->bytesOf(back), before);
+  EXPECT_EQ(this->hashOfAll(back), this->space_.hash());
+  this->eachChanged(
+      [&](const auto& world, const std::string& name) { EXPECT_NE(this->bytesOf(world), before) << name; });
+}
+
+TYPED_TEST(SectionsTest, AReaderTakesNoMoreOfEachThanItsLimit) {
+  using S = TypeParam;
+  const WorldState<S>& world = this->space_.state();
+  const auto bytes = this->bytesOf(world);
+  WorldLimits exact{};
+  const auto allow = [&](const auto& section, const auto& records) {
+    if constexpr (requires { records.slots(); }) exact.*section.limit = records.slots();
+    if constexpr (requires { records.data(); }) {
+      exact.*section.limit = static_cast<std::uint32_t>(records.size());
+    }
+  };
+  WorldState<S>::sections(allow, world);
+  EXPECT_EQ(flawOf(world, exact), nullptr);
+  std::uint64_t offset = 0;
+  EXPECT_NO_THROW(decodeWorld<S>(bytes, offset, exact));
+  const auto refuse = [&](const auto& section, const auto&) {
+    if constexpr (requires { section.limit; }) {
+      WorldLimits less = exact;
+      --(less.*section.limit);
+      EXPECT_STREQ(flawOf(world, less), section.tooMany);
+      std::uint64_t from = 0;
+      EXPECT_THROW(decodeWorld<S>(bytes, from, less), FormatError) << section.object;
+    }
+  };
+  WorldState<S>::sections(refuse, world);
+}
+
+TYPED_TEST(SectionsTest, EachRecordIsChecked) {
+  using S = TypeParam;
+  const auto flawAfter = [&](auto&& change) {
+    WorldState<S> world = this->space_.state();
+    change(world);
+    return std::string(flawOf(world));
+  };
+  EXPECT_EQ(flawOf(this->space_.state()), nullptr);
+  EXPECT_EQ(flawAfter([](auto& w) { w.settings.iterations = 0; }), "a setting is out of range");
+  EXPECT_EQ(flawAfter([](auto& w) { w.timeStep = S(2); }), "the time step is out of range");
+  EXPECT_EQ(flawAfter([](auto& w) { w.staticBody.generation += 2; }), "there is no static body");
+  const auto noType = [](const char*, auto& field) {
+    if constexpr (std::is_same_v<decltype(field), BodyType&>) field = static_cast<BodyType>(9);
+  };
+  EXPECT_EQ(flawAfter([&](auto& w) { Body<S>::fields(w.bodies.valueAt(1), noType); }), "a body is malformed");
+  EXPECT_EQ(flawAfter([](auto& w) {
+              w.shapes.valueAt(0).setBody(BodyId{4000, 1});
+            }),
+            "a shape is on a body that does not exist");
+  EXPECT_EQ(flawAfter([](auto& w) { w.pairs[0].count = kMaxContactsPerPair + 1; }), "a pair is malformed");
+  EXPECT_EQ(flawAfter([](auto& w) { w.handlers[0].number = 0; }), "a handler is malformed");
+}
+
+TYPED_TEST(SectionsTest, AListOutOfOrderIsAFlawOfTheWorld) {
+  using S = TypeParam;
+  const auto expectFlaw = [&](auto&& change) {
+    WorldState<S> world = this->space_.state();
+    change(world);
+    EXPECT_STREQ(flawOf(world), "a list is not in order");
+  };
+  expectFlaw([](auto& w) { std::swap(w.pairs[0], w.pairs[1]); });
+  expectFlaw([](auto& w) { w.pairs[1] = w.pairs[0]; });
+  expectFlaw([](auto& w) { std::swap(w.handlers[0], w.handlers[1]); });
+}
+
+TYPED_TEST(SectionsTest, TheBytesOfASavedWorldCountEachOfThem) {
+  using S = TypeParam;
+  Space<S>& space = this->space_;
+  std::uint64_t before = space.save().bytes();
+  const auto grown = [&] {
+    const std::uint64_t now = space.save().bytes();
+    return now - std::exchange(before, now);
+  };
+  space.addCollisionHandler(3, 4, 1);
+  EXPECT_EQ(grown(), sizeof(HandlerBinding));
+  const ShapeId disc = addDisc<S>(space, {S(1), S(1)}, S(1), S(1));
+  EXPECT_GE(grown(), sizeof(Body<S>) + sizeof(Shape<S>) + 2 * sizeof(std::uint32_t));
+  const std::size_t pairs = space.state().pairs.size();
+  space.step(kTick<S>);
+  const std::size_t more = space.state().pairs.size() - pairs;
+  ASSERT_GT(more, 0u) << disc.index;
+  EXPECT_GE(grown(), more * sizeof(Pair<S>));
+}
+
+}  // namespace
+}  // namespace samestep
