@@ -55,7 +55,8 @@ struct RelativePose {
   /// Its origin in the other's coordinates, in units of 2^-14 m toward zero.
   std::int32_t x = 0;
   std::int32_t y = 0;
-  /// Cosine (high half) and sine of its angle to the other, in units of 2^-14.
+  /// The smaller in size of cosine and sine of its angle to the other, in units of 2^-29 toward zero, times
+  /// 4; plus 2 if it is the sine, plus 1 if the other one is negative.
   std::uint32_t turn = 0;
 
   template <class Self, class Visitor>

@@ -12,6 +12,14 @@ namespace samestep {
 /// What a collision handler does. A null function does what the wildcard handlers of both shapes do, or
 /// nothing. begin and preSolve answer whether the shapes shall collide: begin for as long as they touch,
 /// preSolve for this step.
+///
+/// Shapes touch in a step that finds them overlapping or just meeting, to 2^-20 m, or, in the soft step, in
+/// which their contact pushes; shapes that are only within Settings::contactMargin do not. begin is called
+/// once in the first such step, preSolve in each, postSolve in each in which the pair was solved, and
+/// separate once in the first step in which they do not touch, or when one of them goes. Every begin has its
+/// separate. begin and preSolve are called before an impulse acts: pairs for which somebody has one of the
+/// two are solved from the step on that finds them touching, others also before they touch, within the
+/// margin.
 template <Scalar S>
 struct CollisionHandler {
   bool (*begin)(Arbiter<S>&, Space<S>&, void* data) = nullptr;

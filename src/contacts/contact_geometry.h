@@ -16,6 +16,7 @@ struct Frame {
 
   static Frame of(const Body<S>& body) { return {body.position(), body.rotation()}; }
   Vector<S> toLocal(const Vector<S>& point) const { return unrotate(point - origin, rotation); }
+  Vector<S> toWorld(const Vector<S>& point) const { return origin + rotate(point, rotation); }
 
   friend bool operator==(const Frame&, const Frame&) = default;
 };
@@ -51,11 +52,27 @@ template <Scalar S>
 // belongs to B, by as much as they turned. The pose compared with is that of the last true collision, so
 // nothing adds up.
 
-/// Units of a relative pose per metre, and per 1 of cosine and sine.
+/// Units of a relative pose per metre, and per 1 of a cosine or sine.
 inline constexpr int kPoseUnits = 1 << 14;
+inline constexpr int kTurnBits = 29;
 /// How many units no point of a shape may have moved: a millimetre, a fifth of the usual slop and a
 /// twentieth of the usual margin.
 inline constexpr int kSteadyUnits = 16;
+
+/// A turn in 32 bits: the cosine or the sine, whichever is smaller in size, which is where it tells most, and
+/// in the two lowest bits which one it is and the sign of the other.
+template <Scalar S>
+[[gnu::always_inline]] inline std::uint32_t turnBits(const Vector<S>& turn) {
+  const bool bySine = abs(turn.y) < abs(turn.x);
+  const S small = bySine ? turn.y : turn.x, large = bySine ? turn.x : turn.y;
+  std::int32_t units;
+  if constexpr (FixedNumber<S>) {
+    units = static_cast<std::int32_t>(small.raw() / (std::int64_t{1} << (S::kBits - kTurnBits)));
+  } else {
+    units = static_cast<std::int32_t>(small * S(1 << kTurnBits));
+  }
+  return static_cast<std::uint32_t>(units) << 2 | (bySine ? 2u : 0u) | (large < S(0) ? 1u : 0u);
+}
 
 /// How `b` stands to `a`.
 /// @pre the origins are less than 2^16 m apart along each axis, as those of shapes that meet are
@@ -70,23 +87,23 @@ template <Scalar S>
     }
   };
   const Vector<S> place = a.toLocal(b.origin);
-  const Vector<S> turn = unrotate(b.rotation, a.rotation);
-  return {units(place.x), units(place.y),
-          static_cast<std::uint32_t>(units(turn.x)) << 16 |
-              (static_cast<std::uint32_t>(units(turn.y)) & 0xffffu)};
+  return {units(place.x), units(place.y), turnBits(unrotate(b.rotation, a.rotation))};
 }
 
-/// Whether no point within `reach` metres of b's origin has moved by more than kSteadyUnits.
+/// Whether no point within `reach` metres of b's origin has moved by more than kSteadyUnits, whatever was cut
+/// off both poses. A turn across a diagonal, where the other number becomes the smaller one, counts as far.
 [[gnu::always_inline]] inline bool steady(const RelativePose& now, const RelativePose& then,
                                           std::int32_t reach) {
-  const auto apart = [](std::int64_t x, std::int64_t y) { return max(x - y, y - x); };
-  const auto half = [](std::uint32_t bits) {
-    return static_cast<std::int16_t>(static_cast<std::uint16_t>(bits));
-  };
-  const std::int64_t moved = max(apart(now.x, then.x), apart(now.y, then.y));
+  if (((now.turn ^ then.turn) & 3u) != 0) return false;
+  const auto apart = [](std::int64_t x, std::int64_t y) { return max(x - y, y - x) + 1; };
+  const std::int64_t x = apart(now.x, then.x), y = apart(now.y, then.y);
   const std::int64_t turned =
-      max(apart(half(now.turn >> 16), half(then.turn >> 16)), apart(half(now.turn), half(then.turn)));
-  return moved + reach * turned <= kSteadyUnits;
+      apart(static_cast<std::int32_t>(now.turn) >> 2, static_cast<std::int32_t>(then.turn) >> 2);
+  // On the way it is at least 1 / sqrt(2) that a turn changes the smaller one by; 1.5 is more than sqrt(2).
+  constexpr int kPerUnit = kTurnBits - 14;
+  const std::int64_t room = kSteadyUnits - ((3 * reach * turned) >> (kPerUnit + 1)) - 1;
+  if (room <= 0 || max(x, y) > room) return false;
+  return x * x + y * y <= room * room;
 }
 
 }  // namespace samestep

@@ -51,7 +51,7 @@ std::span<const typename Step<S>::Line> Step<S>::lines(SolverKind solver) {
       {Stage::findPairs, [](Step& stages, C& step) { stages.findPairs.run(step); }},
       {Stage::collide, [](Step& of, C& step) { of.updateContacts.run(step, of.findPairs.overlapping()); }},
       {Stage::preStep, [](Step& stages, C& step) { stages.soft.prepare(step); }},
-      {Stage::solve, [](Step& stages, C& step) { stages.soft.solve(step); }},
+      {Stage::solve, [](Step& stages, C& step) { stages.soft.solve(step), UpdateContacts<S>::settle(step); }},
       {Stage::integratePositions, [](Step& stages, C& step) { stages.soft.finish(step); }},
       {Stage::updateShapes, [](Step& stages, C& step) { stages.placeShapes.run(step); }},
       {Stage::callbacks, [](Step&, C& step) { tellResults(step); }},

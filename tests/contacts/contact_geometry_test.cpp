@@ -62,8 +62,11 @@ TYPED_TEST(ContactGeometryTest, TheRelativePoseIsThatOfTheMirrorImage) {
   const RelativePose pose = relativePose(a, b), mirrored = relativePose(image(a), image(b));
   EXPECT_EQ(mirrored.x, -pose.x);
   EXPECT_EQ(mirrored.y, pose.y);
-  EXPECT_EQ(mirrored.turn >> 16, pose.turn >> 16);
-  EXPECT_EQ(static_cast<std::uint16_t>(mirrored.turn + pose.turn), 0);
+  // The cosine is the smaller one, and the sine has another sign.
+  EXPECT_EQ(mirrored.turn, pose.turn ^ 1);
+  const Frame<S> near{b.origin, forAngle(S(1))}, nearImage = image(near);
+  const auto sine = [](std::uint32_t turn) { return static_cast<std::int32_t>(turn) >> 2; };
+  EXPECT_EQ(sine(relativePose(image(a), nearImage).turn), -sine(relativePose(a, near).turn));
 }
 
 TYPED_TEST(ContactGeometryTest, SteadyMeansThatNoPointMovedByMoreThanAMillimetre) {
@@ -76,16 +79,47 @@ TYPED_TEST(ContactGeometryTest, SteadyMeansThatNoPointMovedByMoreThanAMillimetre
     const Frame<S> moved{{S(3) + unit * S(x), S(4) + unit * S(y)}, forAngle(unit * S(angle))};
     return steady(relativePose(Frame<S>{}, moved), relativePose(Frame<S>{}, still), reach);
   };
-  EXPECT_TRUE(isSteady(most, -most, 0, 1));
-  EXPECT_FALSE(isSteady(most + 1, 0, 0, 1));
-  EXPECT_FALSE(isSteady(0, -most - 1, 0, 1));
-  // Cut to whole units, a sine may lose one.
-  EXPECT_TRUE(isSteady(0, 0, most, 1));
-  EXPECT_FALSE(isSteady(0, 0, most, 2));
-  EXPECT_TRUE(isSteady(most / 2, 0, -most / 2, 1));
-  EXPECT_FALSE(isSteady(most / 2 + 1, 0, -most / 2 - 1, 1));
-  EXPECT_FALSE(isSteady(0, 0, -most - 2, 1));
+  EXPECT_TRUE(isSteady(0, 0, 0, 1));
+  EXPECT_TRUE(isSteady(most / 2, -most / 2, 0, 1));
+  EXPECT_TRUE(isSteady(most - 3, 0, 0, 1));
+  EXPECT_FALSE(isSteady(most, 0, 0, 1));
+  EXPECT_FALSE(isSteady(0, -most, 0, 1));
+  EXPECT_FALSE(isSteady(3 * most / 4, 3 * most / 4, 0, 1));
+  EXPECT_TRUE(isSteady(0, 0, most / 2, 1));
+  EXPECT_FALSE(isSteady(0, 0, most / 2, 2));
+  EXPECT_FALSE(isSteady(0, 0, -most, 1));
+  EXPECT_FALSE(isSteady(most / 2, 0, -most / 2, 1));
   EXPECT_FALSE(isSteady(0, 0, 3 * kPoseUnits, 1));
+}
+
+// What moved is the point that is farthest away, whatever the pose is and however long the shape.
+TYPED_TEST(ContactGeometryTest, ALongShapeIsSteadyWithinAMillimetreToo) {
+  using S = TypeParam;
+  int held = 0, moved = 0;
+  for (const int reach : {1, 2, 7, 30, 126, 1000}) {
+    for (int i = 0; i < 200; ++i) {
+      const S angle = ratio<S>(i, 31), turn = ratio<S>(i % 20 + 1, 10000 * reach);
+      const Frame<S> still{{S(3), S(4)}, forAngle(angle)};
+      const Frame<S> turned{{S(3) + ratio<S>(i % 3, 4096), S(4)}, forAngle(angle + turn)};
+      const bool isSteady = steady(relativePose(Frame<S>{}, turned), relativePose(Frame<S>{}, still), reach);
+      const double way = double(turn) * reach + double(turned.origin.x - still.origin.x);
+      EXPECT_TRUE(!isSteady || way <= 1e-3) << reach << " m, step " << i;
+      held += isSteady && turn * S(reach) > ratio<S>(1, 4096);
+      moved += !isSteady;
+    }
+  }
+  // Small turns of long shapes are told from none.
+  EXPECT_GT(held, 100);
+  EXPECT_GT(moved, 100);
+}
+
+TYPED_TEST(ContactGeometryTest, AQuarterTurnIsNotSteady) {
+  using S = TypeParam;
+  for (const S turn : {kPi<S> * ratio<S>(1, 2), kPi<S>, -kPi<S> * ratio<S>(1, 2)}) {
+    const Frame<S> still{{S(3), S(4)}, {S(1), S(0)}};
+    const Frame<S> turned{{S(3), S(4)}, forAngle(turn)};
+    EXPECT_FALSE(steady(relativePose(Frame<S>{}, turned), relativePose(Frame<S>{}, still), 1));
+  }
 }
 
 // A box and the face of another, turned by an eighth, before its corner: their boxes overlap. It is moved

@@ -83,6 +83,20 @@ void ContactCallbacks<S>::wildcardSeparate(Context& context, Arbiter<S>& arbiter
 }
 
 template <Scalar S>
+bool ContactCallbacks<S>::mayBeRefused(Context& context, Pair<S>& pair) {
+  Arbiter<S> arbiter = arbiterOf(context, pair);
+  const CollisionHandler<S>* handler = handlerFor(context, arbiter);
+  const auto has = [](const CollisionHandler<S>* asked, auto function) {
+    return asked != nullptr && asked->*function != nullptr;
+  };
+  const auto isAsked = [&](auto function) {
+    return has(handler, function) || has(wildcardFor(context, arbiter.shapeDataA()), function) ||
+           has(wildcardFor(context, arbiter.shapeDataB()), function);
+  };
+  return isAsked(&CollisionHandler<S>::begin) || isAsked(&CollisionHandler<S>::preSolve);
+}
+
+template <Scalar S>
 bool ContactCallbacks<S>::ask(Context& context, Pair<S>& pair) {
   Arbiter<S> arbiter = arbiterOf(context, pair);
   const CollisionHandler<S>* handler = handlerFor(context, arbiter);
@@ -124,7 +138,7 @@ template <Scalar S>
 void ContactCallbacks<S>::postSolve(Context& context) {
   if (context.state.handlers.empty()) return;
   for (Pair<S>& pair : context.state.pairs) {
-    if (pair.solved == 0) continue;
+    if (pair.solved == 0 || !touching(pair)) continue;
     Arbiter<S> arbiter = arbiterOf(context, pair);
     const CollisionHandler<S>* handler = handlerFor(context, arbiter);
     if (handler != nullptr && handler->postSolve != nullptr) {

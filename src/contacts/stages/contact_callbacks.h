@@ -16,11 +16,13 @@ struct ContactCallbacks {
     return pair.count > 0 && pair.age == 0 &&
            (pair.state == ArbiterState::firstCollision || pair.state == ArbiterState::normal);
   }
+  /// Whether anybody is asked if the pair shall be solved.
+  static bool mayBeRefused(Context& context, Pair<S>& pair);
   static Arbiter<S> arbiterOf(Context& context, Pair<S>& pair);
   /// Calls begin for a first contact, then preSolve; whether the pair is to be solved.
   static bool ask(Context& context, Pair<S>& pair);
   static void separate(Context& context, Pair<S>& pair, bool removal);
-  /// Calls postSolve for all pairs that were solved.
+  /// Calls postSolve for all pairs that were solved and touched.
   static void postSolve(Context& context);
   /// Forgets the pairs of a body or of a shape, as if it had never touched anything; separate is called. The
   /// Space is locked: what the callbacks want to add or remove has to wait. MIS: arbiterUnthread

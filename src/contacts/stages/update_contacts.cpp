@@ -4,11 +4,25 @@
 #include <atomic>
 
 #include "base/require_ieee.h"
+#include "contacts/approach.h"
 #include "contacts/push_contacts.h"
 #include "contacts/stages/contact_callbacks.h"
+#include "contacts/touching.h"
+#include "dynamics/body_access.h"
 #include "solver/soft_step/block_groups.h"
 
 namespace samestep {
+
+namespace {
+
+/// Whether pairs are decided when all have been collided: where handlers are asked, and where what touches is
+/// known before the solver tells.
+template <Scalar S>
+bool decidesLater(const StepContext<S>& step) {
+  return !step.state.handlers.empty() || !step.isSoft();
+}
+
+}  // namespace
 
 template <Scalar S>
 void UpdateContacts<S>::collidePairs(StepContext<S>& step, const std::uint8_t* overlapping) {
@@ -16,15 +30,17 @@ void UpdateContacts<S>::collidePairs(StepContext<S>& step, const std::uint8_t* o
   const bool surfacesKnown = step.derived.surfacesKnown;
   step.derived.surfacesKnown = false;
   someLeft_ = false;
-  left_.resize(count);
-  // Handlers are asked in order, and see the pairs before theirs updated, those after it not.
-  if (!step.team.helpsWith(count, StepContext<S>::kFewPairs) || !step.state.handlers.empty()) {
+  found_.resize(count);
+  const bool handled = !step.state.handlers.empty();
+  if (!step.team.helpsWith(count, StepContext<S>::kFewPairs)) {
     someLeft_ = collideRange(step, overlapping, 0, count, surfacesKnown, step.events.collisionStats);
   } else {
     collideTogether(step, overlapping, surfacesKnown);
   }
+  mendSeams_.run(step, found_);
+  decidePairs(step, surfacesKnown && !handled, decidesLater(step));
   // What callbacks have set is for this step.
-  step.derived.surfacesKnown = step.state.handlers.empty();
+  step.derived.surfacesKnown = !handled;
 }
 
 template <Scalar S>
@@ -51,35 +67,53 @@ void UpdateContacts<S>::collideTogether(StepContext<S>& step, const std::uint8_t
   step.events.collisionStats.highEpaIterations += epa;
 }
 
-/// Those of a range; without handlers this writes to nothing but these pairs.
+/// Those of a range; this writes to nothing but these pairs. In the soft step without handlers it decides
+/// about them, too, but for those that may lie at a seam.
 /// @return whether any of them touched before and does not now
 template <Scalar S>
 bool UpdateContacts<S>::collideRange(StepContext<S>& step, const std::uint8_t* overlapping,
                                      std::uint32_t begin, std::uint32_t end, bool surfacesKnown,
                                      CollisionStats& stats) {
   bool someLeft = false;
+  const bool later = decidesLater(step);
   for (std::uint32_t i = begin; i < end; ++i) {
     Pair<S>& pair = step.state.pairs[i];
     if (pair.state == ArbiterState::firstCollision) pair.state = ArbiterState::normal;
     pair.solved = 0;
     if (pair.state != ArbiterState::apart && pair.age != 0xffffffffu) ++pair.age;
-    if (overlapping[i] != 0) collidePair(step, pair, surfacesKnown, stats);
-    const bool left = pair.state != ArbiterState::apart && pair.age != 0;
-    left_[i] = left ? 1 : 0;
-    someLeft |= left;
+    std::uint8_t found = 0;
+    if (overlapping[i] != 0) {
+      found = collidePair(step, pair, stats);
+    } else {
+      pair.manifold = Manifold::unknown;
+    }
+    found_[i] = found;
+    if (later || (found & ContactFound::kSeam) != 0) continue;
+    if ((found & ContactFound::kNear) != 0) {
+      const bool plain = (found & ContactFound::kPlain) != 0 && surfacesKnown;
+      if (plain && pair.state != ArbiterState::ignored) {
+        pair.solved = 1;
+      } else {
+        decide(step, pair, surfacesKnown && (found & ContactFound::kFresh) == 0);
+      }
+    }
+    someLeft |= noteLeft(pair, i);
   }
   return someLeft;
 }
 
+/// Finds the contact of a pair, or takes that of the last step.
+/// @return what was found: bits of ContactFound
 template <Scalar S>
-void UpdateContacts<S>::collidePair(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown,
-                                    CollisionStats& stats) {
+std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>& pair,
+                                            CollisionStats& stats) {
   const Derived<S>& derived = step.derived;
   const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
   const PlacedPose<S>&bodyA = derived.poses[shapeA.body], &bodyB = derived.poses[shapeB.body];
   const bool sensor = shapeA.sensor || shapeB.sensor;
+  const bool soft = step.isSoft() && !sensor;
   // A circle is collided faster than remembered, and no margin goes round a sensor.
-  const bool recycles = step.isSoft() && !sensor && !shapeA.round && !shapeB.round;
+  const bool recycles = soft && !shapeA.round && !shapeB.round;
   RelativePose pose;
   bool same = false;
   if (recycles) {
@@ -87,8 +121,8 @@ void UpdateContacts<S>::collidePair(StepContext<S>& step, Pair<S>& pair, bool su
     const bool byA = shapeA.reach >= shapeB.reach;
     pose = byA ? relativePose(bodyA.frame, bodyB.frame) : relativePose(bodyB.frame, bodyA.frame);
     if (pair.manifold != Manifold::unknown && steady(pose, pair.pose, min(shapeA.reach, shapeB.reach))) {
-      if (pair.manifold == Manifold::apart) return;
-      same = pair.age == 1;
+      if (pair.manifold == Manifold::apart) return 0;
+      same = pair.count > 0;
     }
   }
   if (!same) {
@@ -101,28 +135,141 @@ void UpdateContacts<S>::collidePair(StepContext<S>& step, Pair<S>& pair, bool su
     const bool rolls = info.count == 1 && (shapeA.rounded || shapeB.rounded);
     pair.manifold = Manifold::unknown;
     if (recycles && !rolls) pair.manifold = info.count == 0 ? Manifold::apart : Manifold::touching;
-    if (info.count == 0) return;
+    if (info.count == 0) return 0;
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
   }
-  pair.age = 0;
+  const bool movesA = bodyA.type == BodyType::dynamicBody, movesB = bodyB.type == BodyType::dynamicBody;
+  // What held something in the last step need not be asked.
+  const bool holds = recycles && pair.contacts[0].normalSpeed + pair.contacts[1].normalSpeed != S(0);
+  if (soft && (movesA || movesB) && !holds && !meetsInStep(step, pair)) return 0;
+  const bool seam = !sensor && movesA != movesB;
+  const bool alike = shapeA.surface == shapeB.surface;
+  const bool plain = same && alike && (movesA || movesB);
+  return static_cast<std::uint8_t>(ContactFound::kNear | (same ? 0 : ContactFound::kFresh) |
+                                   (seam ? ContactFound::kSeam : 0) | (plain ? ContactFound::kPlain : 0));
+}
+
+namespace {
+
+/// How far a body will go in this step, as far as is known before contacts are solved, and in one substep
+/// more: the last substep ends with speeds that hold contacts for another one.
+template <Scalar S>
+StepWay<S> wayOf(const StepContext<S>& step, std::uint32_t index) {
+  const Body<S>& body = step.state.bodies.valueAt(index);
+  const Settings<S>& settings = step.state.settings;
+  const S dt = step.dt + step.dt / S(settings.substeps);
+  StepWay<S> way{body.worldCenter(), body.velocity() * dt, body.angularVelocity() * dt};
+  if (body.isDynamic()) {
+    way.way += BodyAccess<S>::acceleration(body, settings.gravity).velocity * (dt * dt * ratio<S>(1, 2));
+  }
+  return way;
+}
+
+}  // namespace
+
+/// Whether a contact between shapes that are apart is one in this step: see meets.
+template <Scalar S>
+bool UpdateContacts<S>::meetsInStep(const StepContext<S>& step, Pair<S>& pair) {
+  const Derived<S>& derived = step.derived;
+  const std::uint32_t indexA = derived.traits[pair.a.index].body, indexB = derived.traits[pair.b.index].body;
+  const Frame<S>&frameA = derived.poses[indexA].frame, &frameB = derived.poses[indexB].frame;
+  if (overlaps(pair, frameA, frameB)) return true;
+  return meets(pair, Approaching<S>{derived.placed[pair.a.index], frameA, wayOf(step, indexA)},
+               Approaching<S>{derived.placed[pair.b.index], frameB, wayOf(step, indexB)});
+}
+
+/// Decides about the pairs that were left for now, in order: handlers see the pairs before theirs decided,
+/// those after it not.
+/// @param all  whether none was decided
+template <Scalar S>
+void UpdateContacts<S>::decidePairs(StepContext<S>& step, bool surfacesKnown, bool all) {
+  for (std::uint32_t i = 0; i < found_.size(); ++i) {
+    // Of those at seams some have no contact any more.
+    const std::uint8_t found = found_[i];
+    if (!all && (found & ContactFound::kSeam) == 0) continue;
+    Pair<S>& pair = step.state.pairs[i];
+    if ((found & ContactFound::kNear) != 0) {
+      decide(step, pair, surfacesKnown && (found & ContactFound::kFresh) == 0);
+    }
+    if (noteLeft(pair, i)) someLeft_ = true;
+  }
+}
+
+/// Notes whether a pair touched before and does not now. Of what is solved before it touches, the solver
+/// tells whether it did.
+template <Scalar S>
+bool UpdateContacts<S>::noteLeft(const Pair<S>& pair, std::uint32_t index) {
+  const bool left = pair.state != ArbiterState::apart && pair.age != 0 && pair.solved == 0;
+  found_[index] = static_cast<std::uint8_t>((found_[index] & ~ContactFound::kLeft) | (left ? 1 : 0));
+  return left;
+}
+
+/// Takes what the surfaces of a pair say, and decides whether it is solved.
+/// @param surfacesKnown  whether the pair has it from the last step
+template <Scalar S>
+void UpdateContacts<S>::decide(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown) {
+  const Derived<S>& derived = step.derived;
+  const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
+  const PlacedPose<S>&bodyA = derived.poses[shapeA.body], &bodyB = derived.poses[shapeB.body];
   const Surface<S>&surfaceA = derived.surfaces[shapeA.surface], &surfaceB = derived.surfaces[shapeB.surface];
   const bool belt = surfaceA.velocity != surfaceB.velocity;
-  if (!same || !surfacesKnown || belt) {
+  if (!surfacesKnown || belt) {
     const Vector<S> normal = belt ? rotate(pair.localNormal, bodyA.frame.rotation) : Vector<S>();
     takeSurfaces(pair, surfaceA, surfaceB, normal);
   }
-  const bool wanted = applyCollision(step, pair);
   const bool moves = bodyA.type == BodyType::dynamicBody || bodyB.type == BodyType::dynamicBody;
-  if (wanted && moves && !sensor) {
+  const bool solvable = moves && !shapeA.sensor && !shapeB.sensor;
+  if (step.isSoft()) {
+    const bool handled = !step.state.handlers.empty();
+    const bool asked =
+        pair.state == ArbiterState::ignored || (handled && ContactCallbacks<S>::mayBeRefused(step, pair));
+    if (solvable && !asked) pair.solved = 1;
+    // Where nobody looks before the solver is through, it tells.
+    if (pair.solved != 0 && !handled) return;
+    if (!overlaps(pair, bodyA.frame, bodyB.frame)) return;
+  }
+  touch(step, pair, solvable);
+}
+
+/// Takes the shapes of a pair for touching, and asks whether it shall be solved.
+template <Scalar S>
+void UpdateContacts<S>::touch(StepContext<S>& step, Pair<S>& pair, bool solvable) {
+  pair.age = 0;
+  const bool wanted = applyCollision(step, pair);
+  if (wanted && solvable) {
     pair.solved = 1;
   } else {
     // What is not solved must not come back as an old impulse.
+    pair.solved = 0;
     for (Contact<S>& contact : pair.contacts) {
       contact.normalSpeed = contact.tangentSpeed = contact.normalTotal = contact.tangentTotal = S(0);
     }
     if (pair.state != ArbiterState::ignored && pair.state != ArbiterState::firstCollision) {
       pair.state = ArbiterState::normal;
     }
+  }
+}
+
+template <Scalar S>
+void UpdateContacts<S>::settle(StepContext<S>& step) {
+  const Derived<S>& derived = step.derived;
+  for (Pair<S>& pair : step.state.pairs) {
+    const bool apart = pair.state == ArbiterState::apart;
+    if (pair.solved == 0 || (pair.age == 0 && !apart)) continue;
+    const auto frameOf = [&](ShapeId id) -> const Frame<S>& {
+      return derived.poses[derived.traits[id.index].body].frame;
+    };
+    if (wasPushed(pair) || overlaps(pair, frameOf(pair.a), frameOf(pair.b))) {
+      pair.age = 0;
+      if (apart || pair.state == ArbiterState::cached) pair.state = ArbiterState::firstCollision;
+      continue;
+    }
+    if (apart) continue;
+    if (pair.state != ArbiterState::cached) {
+      pair.state = ArbiterState::cached;
+      ContactCallbacks<S>::separate(step, pair, false);
+    }
+    if (pair.age >= step.state.settings.collisionPersistence) forgetTouch(pair);
   }
 }
 
@@ -159,7 +306,7 @@ void UpdateContacts<S>::expirePairs(StepContext<S>& step, const std::uint8_t* ov
   auto& pairs = step.state.pairs;
   std::size_t firstDropped = pairs.size();
   for (std::size_t i = 0; someLeft_ && i < pairs.size(); ++i) {
-    if (left_[i] == 0) continue;
+    if ((found_[i] & ContactFound::kLeft) == 0) continue;
     Pair<S>& pair = pairs[i];
     if (step.rests(pair) && staysInTouch(step, pair)) continue;
     if (pair.state != ArbiterState::cached) {
@@ -167,7 +314,9 @@ void UpdateContacts<S>::expirePairs(StepContext<S>& step, const std::uint8_t* ov
       ContactCallbacks<S>::separate(step, pair, false);
     }
     if (pair.age < step.state.settings.collisionPersistence) continue;
-    if (overlapping[i] != 0) {
+    if (pair.manifold == Manifold::touching) {
+      forgetTouch(pair);
+    } else if (overlapping[i] != 0) {
       Pair<S> fresh;
       fresh.a = pair.a;
       fresh.b = pair.b;

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "contacts/stages/mend_seams.h"
 #include "context/step_context.h"
 
 namespace samestep {
 
 /// The stage that collides pairs: manifolds and surfaces are brought up to date, begin and preSolve asked,
-/// separate called, and contacts that stayed apart too long forgotten.
+/// separate called, and contacts that stayed apart too long forgotten. In three passes: contacts are found,
+/// those at seams mended, and then it is decided who touches and what is solved.
 template <Scalar S>
 class UpdateContacts {
  public:
@@ -18,6 +20,9 @@ class UpdateContacts {
     collidePairs(step, overlapping.data());
     expirePairs(step, overlapping.data());
   }
+  /// After the soft step's solver: tells which of the pairs that were solved before they touched have
+  /// touched, those that an impulse held and those that overlapped; separate is called for the rest.
+  static void settle(StepContext<S>& step);
 
  private:
   void collidePairs(StepContext<S>& step, const std::uint8_t* overlapping);
@@ -25,7 +30,12 @@ class UpdateContacts {
   bool collideRange(StepContext<S>& step, const std::uint8_t* overlapping, std::uint32_t begin,
                     std::uint32_t end, bool surfacesKnown, CollisionStats& stats);
   /// MIS: spaceCollideShapes
-  static void collidePair(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown, CollisionStats& stats);
+  static std::uint8_t collidePair(const StepContext<S>& step, Pair<S>& pair, CollisionStats& stats);
+  static bool meetsInStep(const StepContext<S>& step, Pair<S>& pair);
+  void decidePairs(StepContext<S>& step, bool surfacesKnown, bool all);
+  static void decide(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown);
+  static void touch(StepContext<S>& step, Pair<S>& pair, bool solvable);
+  bool noteLeft(const Pair<S>& pair, std::uint32_t index);
   /// Takes over a collision and asks the callbacks: whether the pair shall be solved. MIS: arbiterUpdate
   static bool applyCollision(StepContext<S>& step, Pair<S>& pair);
   /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
@@ -34,8 +44,9 @@ class UpdateContacts {
   static bool staysInTouch(const StepContext<S>& step, const Pair<S>& pair);
   static void dropApart(StepContext<S>& step, const std::uint8_t* overlapping, std::size_t first);
 
-  // Of each pair: whether it touched before and does not now.
-  std::vector<std::uint8_t> left_;
+  // Of each pair what was found: bits of ContactFound.
+  std::vector<std::uint8_t> found_;
+  MendSeams<S> mendSeams_;
   bool someLeft_ = false;
 };
 
