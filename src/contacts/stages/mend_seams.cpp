@@ -59,14 +59,15 @@ void MendSeams<S>::collect(const StepContext<S>& step, const std::vector<std::ui
     ++count_[aMoves ? a : b];
   }
   std::size_t kept = 0;
-  for (const SeamPair& seam : seams_) {
-    if (count_[seam.moving] > 1) seams_[kept++] = seam;
-  }
-  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-    if ((found[i] & ContactFound::kSeam) == 0) continue;
-    count_[pairs[i].a.index] = count_[pairs[i].b.index] = 0;
+  for (const SeamPair seam : seams_) {
+    if (count_[seam.moving] > 1) {
+      seams_[kept++] = seam;
+    } else {
+      count_[seam.moving] = 0;
+    }
   }
   seams_.resize(kept);
+  for (const SeamPair& seam : seams_) count_[seam.moving] = 0;
   std::sort(seams_.begin(), seams_.end());  // total order: no pair is in it twice
 }
 

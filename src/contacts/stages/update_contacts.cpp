@@ -140,10 +140,11 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
   }
   const bool movesA = bodyA.type == BodyType::dynamicBody, movesB = bodyB.type == BodyType::dynamicBody;
   // What held something in the last step need not be asked.
-  const bool holds = recycles && pair.contacts[0].normalSpeed + pair.contacts[1].normalSpeed != S(0);
+  const bool holds = pair.contacts[0].normalSpeed + pair.contacts[1].normalSpeed != S(0);
   if (soft && (movesA || movesB) && !holds && !meetsInStep(step, pair)) return 0;
   const bool seam = !sensor && movesA != movesB;
-  const bool alike = shapeA.surface == shapeB.surface;
+  const bool alike = shapeA.surface == shapeB.surface ||
+                     derived.surfaces[shapeA.surface].velocity == derived.surfaces[shapeB.surface].velocity;
   const bool plain = same && alike && (movesA || movesB);
   return static_cast<std::uint8_t>(ContactFound::kNear | (same ? 0 : ContactFound::kFresh) |
                                    (seam ? ContactFound::kSeam : 0) | (plain ? ContactFound::kPlain : 0));
