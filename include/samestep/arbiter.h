@@ -52,7 +52,7 @@ struct Contact {
 
 /// How one body stood to another when their shapes were collided: enough to tell whether it still does.
 struct RelativePose {
-  /// Its origin in the other's coordinates, in units of 2^-14 m toward zero.
+  /// Its origin in the other's coordinates, in units of 2^-16 m toward zero, modulo 2^16 m.
   std::int32_t x = 0;
   std::int32_t y = 0;
   /// The smaller in size of cosine and sine of its angle to the other, in units of 2^-29 toward zero, times

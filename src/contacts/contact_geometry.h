@@ -53,17 +53,22 @@ template <Scalar S>
 // nothing adds up.
 
 /// Units of a relative pose per metre, and per 1 of a cosine or sine.
-inline constexpr int kPoseUnits = 1 << 14;
+inline constexpr int kPoseBits = 16;
+inline constexpr int kPoseUnits = 1 << kPoseBits;
 inline constexpr int kTurnBits = 29;
+/// Units of a shape's reach per metre.
+inline constexpr int kReachBits = 4;
+inline constexpr int kReachUnits = 1 << kReachBits;
 /// How many units no point of a shape may have moved: a millimetre, a fifth of the usual slop and a
 /// twentieth of the usual margin.
-inline constexpr int kSteadyUnits = 16;
+inline constexpr int kSteadyUnits = 65;
 
 /// A turn in 32 bits: the cosine or the sine, whichever is smaller in size, which is where it tells most, and
 /// in the two lowest bits which one it is and the sign of the other.
 template <Scalar S>
 [[gnu::always_inline]] inline std::uint32_t turnBits(const Vector<S>& turn) {
-  const bool bySine = abs(turn.y) < abs(turn.x);
+  // Of equals the cosine.
+  const bool bySine = (turn.x - turn.y) * (turn.x + turn.y) > S(0);
   const S small = bySine ? turn.y : turn.x, large = bySine ? turn.x : turn.y;
   std::int32_t units;
   if constexpr (FixedNumber<S>) {
@@ -74,8 +79,8 @@ template <Scalar S>
   return static_cast<std::uint32_t>(units) << 2 | (bySine ? 2u : 0u) | (large < S(0) ? 1u : 0u);
 }
 
-/// How `b` stands to `a`.
-/// @pre the origins are less than 2^16 m apart along each axis, as those of shapes that meet are
+/// How `b` stands to `a`. What is farther than 2^15 m is told modulo 2^16 m: shapes that meet before and
+/// after never moved by that.
 template <Scalar S>
 [[gnu::always_inline]] inline RelativePose relativePose(const Frame<S>& a, const Frame<S>& b) {
   // Toward zero: the mirror image stands in the mirror image of the place.
@@ -83,27 +88,39 @@ template <Scalar S>
     if constexpr (FixedNumber<S>) {
       return static_cast<std::int32_t>(x.raw() / ((std::int64_t{1} << S::kBits) / kPoseUnits));
     } else {
-      return static_cast<std::int32_t>(x * S(kPoseUnits));
+      return static_cast<std::int32_t>(static_cast<std::int64_t>(x * S(kPoseUnits)));
     }
   };
   const Vector<S> place = a.toLocal(b.origin);
   return {units(place.x), units(place.y), turnBits(unrotate(b.rotation, a.rotation))};
 }
 
-/// Whether no point within `reach` metres of b's origin has moved by more than kSteadyUnits, whatever was cut
-/// off both poses. A turn across a diagonal, where the other number becomes the smaller one, counts as far.
+/// Whether no point within a reach of b's origin has moved by more than kSteadyUnits, whatever was cut off
+/// both poses. A turn by more than 2^-8, or across a diagonal, where the other number becomes the smaller
+/// one, counts as far.
+/// @param reach  in units of 1 / kReachUnits m
 [[gnu::always_inline]] inline bool steady(const RelativePose& now, const RelativePose& then,
                                           std::int32_t reach) {
-  if (((now.turn ^ then.turn) & 3u) != 0) return false;
-  const auto apart = [](std::int64_t x, std::int64_t y) { return max(x - y, y - x) + 1; };
-  const std::int64_t x = apart(now.x, then.x), y = apart(now.y, then.y);
-  const std::int64_t turned =
-      apart(static_cast<std::int32_t>(now.turn) >> 2, static_cast<std::int32_t>(then.turn) >> 2);
-  // On the way it is at least 1 / sqrt(2) that a turn changes the smaller one by; 1.5 is more than sqrt(2).
-  constexpr int kPerUnit = kTurnBits - 14;
-  const std::int64_t room = kSteadyUnits - ((3 * reach * turned) >> (kPerUnit + 1)) - 1;
-  if (room <= 0 || max(x, y) > room) return false;
-  return x * x + y * y <= room * room;
+  constexpr std::uint32_t kFarTurn = 1u << (kTurnBits - 8);
+  const std::uint32_t turn = now.turn - then.turn;
+  if ((turn & 3u) != 0 || turn + 4 * kFarTurn > 8 * kFarTurn) return false;
+  const auto apart = [](std::uint32_t difference) {
+    const std::int64_t size = static_cast<std::int32_t>(difference);
+    return max(size, -size) + 1;
+  };
+  const std::int64_t x = apart(static_cast<std::uint32_t>(now.x) - static_cast<std::uint32_t>(then.x));
+  const std::int64_t y = apart(static_cast<std::uint32_t>(now.y) - static_cast<std::uint32_t>(then.y));
+  const std::int64_t turned = (apart(turn) >> 2) + 1;
+  constexpr int kPerUnit = kTurnBits - kPoseBits + kReachBits;
+  // Most have hardly moved.
+  if (((x + y) << kPerUnit) + 2 * reach * turned <= std::int64_t{kSteadyUnits - 1} << kPerUnit) return true;
+  // A turn changes a sine s by its size times sqrt(1 - s^2) on the way, and the inverse of that root is at
+  // most 1 + s^2 for the smaller of sine and cosine.
+  constexpr int kPart = 12;
+  const std::int64_t sine = (apart(now.turn) >> (2 + kTurnBits - kPart)) + (1 << (kPart - 8)) + 1;
+  const std::int64_t perTurn = (1 << kPart) + ((sine * sine) >> kPart) + 1;
+  const std::int64_t room = kSteadyUnits - 1 - ((reach * turned * perTurn) >> (kPerUnit + kPart));
+  return max(x, y) <= room && x * x + y * y <= room * room;
 }
 
 }  // namespace samestep

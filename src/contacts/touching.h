@@ -18,23 +18,35 @@ S separationOf(const Contact<S>& contact, const Vector<S>& normal, const Frame<S
   return dot(b.toWorld(contact.anchorB) - a.toWorld(contact.anchorA), normal);
 }
 
-/// Whether the shapes of a pair touch at one of its points where their bodies stand.
+/// Of the points of a pair that has some.
 template <Scalar S>
-bool overlaps(const Pair<S>& pair, const Frame<S>& a, const Frame<S>& b) {
-  const Vector<S> normal = rotate(pair.localNormal, a.rotation);
-  for (int i = 0; i < pair.count; ++i) {
-    if (separationOf(pair.contacts[i], normal, a, b) <= kTouching<S>) return true;
-  }
-  return false;
+S leastSeparation(const Pair<S>& pair, const Vector<S>& normal, const Frame<S>& a, const Frame<S>& b) {
+  const S first = separationOf(pair.contacts[0], normal, a, b);
+  return pair.count < 2 ? first : min(first, separationOf(pair.contacts[1], normal, a, b));
 }
 
-/// Whether an impulse of the last step acted between the shapes.
+/// Whether the shapes of a pair that has a contact touch where their bodies stand.
+template <Scalar S>
+bool overlaps(const Pair<S>& pair, const Frame<S>& a, const Frame<S>& b) {
+  return leastSeparation(pair, rotate(pair.localNormal, a.rotation), a, b) <= kTouching<S>;
+}
+
+/// Whether an impulse of the last step acted between the shapes. Points that a pair has not are 0.
 template <Scalar S>
 bool wasPushed(const Pair<S>& pair) {
-  for (int i = 0; i < pair.count; ++i) {
-    if (pair.contacts[i].normalTotal != S(0)) return true;
+  return pair.contacts[0].normalTotal != S(0) || pair.contacts[1].normalTotal != S(0);
+}
+
+/// In Pair::solved, of shapes that are known not to touch before the solver.
+inline constexpr std::uint8_t kSolvedApart = 2;
+
+/// Notes that the shapes of a pair touch in this step.
+template <Scalar S>
+void noteTouch(Pair<S>& pair) {
+  pair.age = 0;
+  if (pair.state == ArbiterState::apart || pair.state == ArbiterState::cached) {
+    pair.state = ArbiterState::firstCollision;
   }
-  return false;
 }
 
 /// Makes a pair that has been apart long enough one that has not touched yet; its points stay.

@@ -57,7 +57,8 @@ struct alignas(32) ShapeTraits {
   std::uint32_t surface = 0;  ///< Its number.
   std::uint32_t body = 0;
   ShapeFilter filter{};
-  std::int32_t reach = 0;  ///< Whole metres from the body's origin, none of the shape is beyond.
+  /// From the body's origin, nothing of the shape is beyond; in units of 1 / kReachUnits m.
+  std::int32_t reach = 0;
   bool sensor = false;
   bool round = false;    ///< A circle.
   bool rounded = false;  ///< Has a radius: its surface may roll.
@@ -66,7 +67,7 @@ struct alignas(32) ShapeTraits {
     return {surface,
             shape.body().index,
             shape.filter(),
-            static_cast<std::int32_t>(shape.extent()) + 1,
+            static_cast<std::int32_t>(shape.extent() * S(kReachUnits)) + 1,
             shape.sensor(),
             shape.type() == ShapeType::circle,
             shape.radius() != S(0)};

@@ -77,7 +77,7 @@ TYPED_TEST(ContactGeometryTest, SteadyMeansThatNoPointMovedByMoreThanAMillimetre
   const auto isSteady = [&](int x, int y, int angle, int reach) {
     const Frame<S> still{{S(3), S(4)}, {S(1), S(0)}};
     const Frame<S> moved{{S(3) + unit * S(x), S(4) + unit * S(y)}, forAngle(unit * S(angle))};
-    return steady(relativePose(Frame<S>{}, moved), relativePose(Frame<S>{}, still), reach);
+    return steady(relativePose(Frame<S>{}, moved), relativePose(Frame<S>{}, still), reach * kReachUnits);
   };
   EXPECT_TRUE(isSteady(0, 0, 0, 1));
   EXPECT_TRUE(isSteady(most / 2, -most / 2, 0, 1));
@@ -101,7 +101,8 @@ TYPED_TEST(ContactGeometryTest, ALongShapeIsSteadyWithinAMillimetreToo) {
       const S angle = ratio<S>(i, 31), turn = ratio<S>(i % 20 + 1, 10000 * reach);
       const Frame<S> still{{S(3), S(4)}, forAngle(angle)};
       const Frame<S> turned{{S(3) + ratio<S>(i % 3, 4096), S(4)}, forAngle(angle + turn)};
-      const bool isSteady = steady(relativePose(Frame<S>{}, turned), relativePose(Frame<S>{}, still), reach);
+      const bool isSteady =
+          steady(relativePose(Frame<S>{}, turned), relativePose(Frame<S>{}, still), reach * kReachUnits);
       const double way = double(turn) * reach + double(turned.origin.x - still.origin.x);
       EXPECT_TRUE(!isSteady || way <= 1e-3) << reach << " m, step " << i;
       held += isSteady && turn * S(reach) > ratio<S>(1, 4096);

@@ -47,27 +47,24 @@ void MendSeams<S>::run(StepContext<S>& step, std::vector<std::uint8_t>& found) {
 /// Finds the contacts of shapes that have more than one.
 template <Scalar S>
 void MendSeams<S>::collect(const StepContext<S>& step, const std::vector<std::uint8_t>& found) {
-  const auto& pairs = step.state.pairs;
   const Derived<S>& derived = step.derived;
-  seams_.clear();
-  count_.resize(step.state.shapes.slots(), 0);
-  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-    if ((found[i] & ContactFound::kSeam) == 0) continue;
-    const std::uint32_t a = pairs[i].a.index, b = pairs[i].b.index;
+  const auto movingOf = [&](std::uint32_t i) {
+    const std::uint32_t a = step.state.pairs[i].a.index;
     const bool aMoves = derived.poses[derived.traits[a].body].type == BodyType::dynamicBody;
-    seams_.push_back({aMoves ? a : b, i});
-    ++count_[aMoves ? a : b];
+    return aMoves ? a : step.state.pairs[i].b.index;
+  };
+  asked_.clear();
+  for (std::uint32_t i = 0; i < found.size(); ++i) {
+    if ((found[i] & ContactFound::kSeam) != 0) asked_.push_back(i);
   }
-  std::size_t kept = 0;
-  for (const SeamPair seam : seams_) {
-    if (count_[seam.moving] > 1) {
-      seams_[kept++] = seam;
-    } else {
-      count_[seam.moving] = 0;
-    }
+  count_.resize(step.state.shapes.slots(), 0);
+  for (const std::uint32_t i : asked_) ++count_[movingOf(i)];
+  seams_.clear();
+  for (const std::uint32_t i : asked_) {
+    const std::uint32_t moving = movingOf(i);
+    if (count_[moving] > 1) seams_.push_back({moving, i});
   }
-  seams_.resize(kept);
-  for (const SeamPair& seam : seams_) count_[seam.moving] = 0;
+  for (const std::uint32_t i : asked_) count_[movingOf(i)] = 0;
   std::sort(seams_.begin(), seams_.end());  // total order: no pair is in it twice
 }
 

@@ -3,6 +3,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "contacts/seams.h"
@@ -16,8 +17,6 @@ struct ContactFound {
   static constexpr std::uint8_t kNear = 2;   ///< It has a contact.
   static constexpr std::uint8_t kFresh = 4;  ///< Which is not that of the last step.
   static constexpr std::uint8_t kSeam = 8;   ///< Between what moves and what contacts do not move.
-  /// Which is that of the last step, holds a body, and lies between surfaces that move alike.
-  static constexpr std::uint8_t kPlain = 16;
 };
 
 /// Judges the contacts of shapes that meet several others which do not move against each other: see
@@ -27,6 +26,8 @@ class MendSeams {
  public:
   /// @param found  of each pair; a contact that goes is no longer found, one that changes is fresh
   void run(StepContext<S>& step, std::vector<std::uint8_t>& found);
+  /// The pairs of the last run that may lie at a seam, in order.
+  std::span<const std::uint32_t> asked() const { return asked_; }
 
  private:
   struct SeamPair {
@@ -37,6 +38,7 @@ class MendSeams {
   void collect(const StepContext<S>& step, const std::vector<std::uint8_t>& found);
   void judge(StepContext<S>& step, std::vector<std::uint8_t>& found, std::uint32_t begin, std::uint32_t end);
 
+  std::vector<std::uint32_t> asked_;
   // By the shape that moves; how many contacts a shape has; and those of one.
   std::vector<SeamPair> seams_;
   std::vector<std::uint32_t> count_;

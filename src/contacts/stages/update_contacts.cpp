@@ -76,6 +76,7 @@ bool UpdateContacts<S>::collideRange(StepContext<S>& step, const std::uint8_t* o
                                      CollisionStats& stats) {
   bool someLeft = false;
   const bool later = decidesLater(step);
+  const Deciding deciding{!later, surfacesKnown};
   for (std::uint32_t i = begin; i < end; ++i) {
     Pair<S>& pair = step.state.pairs[i];
     if (pair.state == ArbiterState::firstCollision) pair.state = ArbiterState::normal;
@@ -83,30 +84,28 @@ bool UpdateContacts<S>::collideRange(StepContext<S>& step, const std::uint8_t* o
     if (pair.state != ArbiterState::apart && pair.age != 0xffffffffu) ++pair.age;
     std::uint8_t found = 0;
     if (overlapping[i] != 0) {
-      found = collidePair(step, pair, stats);
+      found = collidePair(step, pair, deciding, stats);
     } else {
       pair.manifold = Manifold::unknown;
     }
-    found_[i] = found;
-    if (later || (found & ContactFound::kSeam) != 0) continue;
-    if ((found & ContactFound::kNear) != 0) {
-      const bool plain = (found & ContactFound::kPlain) != 0 && surfacesKnown;
-      if (plain && pair.state != ArbiterState::ignored) {
-        pair.solved = 1;
-      } else {
-        decide(step, pair, surfacesKnown && (found & ContactFound::kFresh) == 0);
+    if (!later && (found & ContactFound::kSeam) == 0) {
+      if ((found & ContactFound::kNear) != 0 && pair.solved == 0) decide(step, pair, surfacesKnown, found);
+      if (hasLeft(pair)) {
+        found |= ContactFound::kLeft;
+        someLeft = true;
       }
     }
-    someLeft |= noteLeft(pair, i);
+    found_[i] = found;
   }
   return someLeft;
 }
 
-/// Finds the contact of a pair, or takes that of the last step.
+/// Finds the contact of a pair, or takes that of the last step. Of bodies that contacts move, with surfaces
+/// that move alike, it is solved where that may be said now.
 /// @return what was found: bits of ContactFound
 template <Scalar S>
 std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>& pair,
-                                            CollisionStats& stats) {
+                                            const Deciding& deciding, CollisionStats& stats) {
   const Derived<S>& derived = step.derived;
   const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
   const PlacedPose<S>&bodyA = derived.poses[shapeA.body], &bodyB = derived.poses[shapeB.body];
@@ -141,42 +140,44 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
   const bool movesA = bodyA.type == BodyType::dynamicBody, movesB = bodyB.type == BodyType::dynamicBody;
   // What held something in the last step need not be asked.
   const bool holds = pair.contacts[0].normalSpeed + pair.contacts[1].normalSpeed != S(0);
-  if (soft && (movesA || movesB) && !holds && !meetsInStep(step, pair)) return 0;
-  const bool seam = !sensor && movesA != movesB;
-  const bool alike = shapeA.surface == shapeB.surface ||
-                     derived.surfaces[shapeA.surface].velocity == derived.surfaces[shapeB.surface].velocity;
-  const bool plain = same && alike && (movesA || movesB);
-  return static_cast<std::uint8_t>(ContactFound::kNear | (same ? 0 : ContactFound::kFresh) |
-                                   (seam ? ContactFound::kSeam : 0) | (plain ? ContactFound::kPlain : 0));
-}
-
-namespace {
-
-/// How far a body will go in this step, as far as is known before contacts are solved, and in one substep
-/// more: the last substep ends with speeds that hold contacts for another one.
-template <Scalar S>
-StepWay<S> wayOf(const StepContext<S>& step, std::uint32_t index) {
-  const Body<S>& body = step.state.bodies.valueAt(index);
-  const Settings<S>& settings = step.state.settings;
-  const S dt = step.dt + step.dt / S(settings.substeps);
-  StepWay<S> way{body.worldCenter(), body.velocity() * dt, body.angularVelocity() * dt};
-  if (body.isDynamic()) {
-    way.way += BodyAccess<S>::acceleration(body, settings.gravity).velocity * (dt * dt * ratio<S>(1, 2));
+  Meeting meeting = Meeting::notAsked;
+  if (soft && !holds && (movesA || movesB)) {
+    meeting = meetsInStep(step, pair);
+    if (meeting == Meeting::none) return 0;
   }
-  return way;
+  const bool seam = !sensor && movesA != movesB;
+  if (deciding.now && soft && movesA && movesB && shapeA.surface == shapeB.surface &&
+      pair.state != ArbiterState::ignored) {
+    const Surface<S>& surface = derived.surfaces[shapeA.surface];
+    if (!same || !deciding.surfacesKnown) takeSurfaces(pair, surface, surface, {});
+    pair.solved = meeting == Meeting::later ? kSolvedApart : 1;
+    if (meeting == Meeting::now) noteTouch(pair);
+  }
+  return static_cast<std::uint8_t>(ContactFound::kNear | (same ? 0 : ContactFound::kFresh) |
+                                   (seam ? ContactFound::kSeam : 0));
 }
 
-}  // namespace
-
-/// Whether a contact between shapes that are apart is one in this step: see meets.
+/// Whether a contact is one in this step, and of shapes that touch now: see meets.
 template <Scalar S>
-bool UpdateContacts<S>::meetsInStep(const StepContext<S>& step, Pair<S>& pair) {
+typename UpdateContacts<S>::Meeting UpdateContacts<S>::meetsInStep(const StepContext<S>& step,
+                                                                   Pair<S>& pair) {
   const Derived<S>& derived = step.derived;
-  const std::uint32_t indexA = derived.traits[pair.a.index].body, indexB = derived.traits[pair.b.index].body;
-  const Frame<S>&frameA = derived.poses[indexA].frame, &frameB = derived.poses[indexB].frame;
-  if (overlaps(pair, frameA, frameB)) return true;
-  return meets(pair, Approaching<S>{derived.placed[pair.a.index], frameA, wayOf(step, indexA)},
-               Approaching<S>{derived.placed[pair.b.index], frameB, wayOf(step, indexB)});
+  const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
+  const Frame<S>&a = derived.poses[shapeA.body].frame, &b = derived.poses[shapeB.body].frame;
+  const Vector<S> normal = rotate(pair.localNormal, a.rotation);
+  const S gap = leastSeparation(pair, normal, a, b);
+  if (gap <= kTouching<S>) return Meeting::now;
+  // In one substep more than the step has: the last one ends with speeds that hold contacts for another one.
+  const S dt = step.dt + step.dt / S(step.state.settings.substeps);
+  const auto wayOf = [&](std::uint32_t body) {
+    return StepWay<S>::of(step.state.bodies.valueAt(body), step.state.settings.gravity, dt);
+  };
+  const StepWay<S> wayA = wayOf(shapeA.body), wayB = wayOf(shapeB.body);
+  const S turned = wayA.turnedAtMost(shapeA.reach) + wayB.turnedAtMost(shapeB.reach);
+  if (dot(wayA.way - wayB.way, normal) + turned <= gap) return Meeting::later;
+  const bool met = meets(pair, Approaching<S>{derived.placed[pair.a.index], a, wayA},
+                         Approaching<S>{derived.placed[pair.b.index], b, wayB}, normal);
+  return met ? Meeting::later : Meeting::none;
 }
 
 /// Decides about the pairs that were left for now, in order: handlers see the pairs before theirs decided,
@@ -184,37 +185,38 @@ bool UpdateContacts<S>::meetsInStep(const StepContext<S>& step, Pair<S>& pair) {
 /// @param all  whether none was decided
 template <Scalar S>
 void UpdateContacts<S>::decidePairs(StepContext<S>& step, bool surfacesKnown, bool all) {
-  for (std::uint32_t i = 0; i < found_.size(); ++i) {
-    // Of those at seams some have no contact any more.
-    const std::uint8_t found = found_[i];
-    if (!all && (found & ContactFound::kSeam) == 0) continue;
+  const auto decideOne = [&](std::uint32_t i) {
     Pair<S>& pair = step.state.pairs[i];
-    if ((found & ContactFound::kNear) != 0) {
-      decide(step, pair, surfacesKnown && (found & ContactFound::kFresh) == 0);
-    }
-    if (noteLeft(pair, i)) someLeft_ = true;
+    // Of those at seams some have no contact any more.
+    if ((found_[i] & ContactFound::kNear) != 0) decide(step, pair, surfacesKnown, found_[i]);
+    if (!hasLeft(pair)) return;
+    found_[i] |= ContactFound::kLeft;
+    someLeft_ = true;
+  };
+  if (all) {
+    for (std::uint32_t i = 0; i < found_.size(); ++i) decideOne(i);
+  } else {
+    for (const std::uint32_t i : mendSeams_.asked()) decideOne(i);
   }
 }
 
-/// Notes whether a pair touched before and does not now. Of what is solved before it touches, the solver
-/// tells whether it did.
+/// Whether a pair touched before and does not now. Of what is solved before it touches, the solver tells
+/// whether it did.
 template <Scalar S>
-bool UpdateContacts<S>::noteLeft(const Pair<S>& pair, std::uint32_t index) {
-  const bool left = pair.state != ArbiterState::apart && pair.age != 0 && pair.solved == 0;
-  found_[index] = static_cast<std::uint8_t>((found_[index] & ~ContactFound::kLeft) | (left ? 1 : 0));
-  return left;
+bool UpdateContacts<S>::hasLeft(const Pair<S>& pair) {
+  return pair.solved == 0 && pair.age != 0 && pair.state != ArbiterState::apart;
 }
 
 /// Takes what the surfaces of a pair say, and decides whether it is solved.
-/// @param surfacesKnown  whether the pair has it from the last step
+/// @param surfacesKnown  whether pairs that are not fresh have it from the last step
 template <Scalar S>
-void UpdateContacts<S>::decide(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown) {
+void UpdateContacts<S>::decide(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown, std::uint8_t found) {
   const Derived<S>& derived = step.derived;
   const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
   const PlacedPose<S>&bodyA = derived.poses[shapeA.body], &bodyB = derived.poses[shapeB.body];
   const Surface<S>&surfaceA = derived.surfaces[shapeA.surface], &surfaceB = derived.surfaces[shapeB.surface];
-  const bool belt = surfaceA.velocity != surfaceB.velocity;
-  if (!surfacesKnown || belt) {
+  const bool belt = shapeA.surface != shapeB.surface && surfaceA.velocity != surfaceB.velocity;
+  if (!surfacesKnown || belt || (found & ContactFound::kFresh) != 0) {
     const Vector<S> normal = belt ? rotate(pair.localNormal, bodyA.frame.rotation) : Vector<S>();
     takeSurfaces(pair, surfaceA, surfaceB, normal);
   }
@@ -254,15 +256,18 @@ void UpdateContacts<S>::touch(StepContext<S>& step, Pair<S>& pair, bool solvable
 template <Scalar S>
 void UpdateContacts<S>::settle(StepContext<S>& step) {
   const Derived<S>& derived = step.derived;
+  const auto frameOf = [&](ShapeId id) -> const Frame<S>& {
+    return derived.poses[derived.traits[id.index].body].frame;
+  };
   for (Pair<S>& pair : step.state.pairs) {
+    if (pair.solved == 0) continue;
     const bool apart = pair.state == ArbiterState::apart;
-    if (pair.solved == 0 || (pair.age == 0 && !apart)) continue;
-    const auto frameOf = [&](ShapeId id) -> const Frame<S>& {
-      return derived.poses[derived.traits[id.index].body].frame;
+    const auto touches = [&] {
+      if (wasPushed(pair) || (pair.age == 0 && !apart)) return true;
+      return pair.solved != kSolvedApart && overlaps(pair, frameOf(pair.a), frameOf(pair.b));
     };
-    if (wasPushed(pair) || overlaps(pair, frameOf(pair.a), frameOf(pair.b))) {
-      pair.age = 0;
-      if (apart || pair.state == ArbiterState::cached) pair.state = ArbiterState::firstCollision;
+    if (touches()) {
+      noteTouch(pair);
       continue;
     }
     if (apart) continue;

@@ -25,17 +25,27 @@ class UpdateContacts {
   static void settle(StepContext<S>& step);
 
  private:
+  /// Whether what is solved is decided with the collision, and whether pairs have what surfaces say from the
+  /// last step.
+  struct Deciding {
+    bool now, surfacesKnown;
+  };
+
+  /// When shapes that have a contact meet.
+  enum class Meeting { notAsked, now, later, none };
+
   void collidePairs(StepContext<S>& step, const std::uint8_t* overlapping);
   void collideTogether(StepContext<S>& step, const std::uint8_t* overlapping, bool surfacesKnown);
   bool collideRange(StepContext<S>& step, const std::uint8_t* overlapping, std::uint32_t begin,
                     std::uint32_t end, bool surfacesKnown, CollisionStats& stats);
   /// MIS: spaceCollideShapes
-  static std::uint8_t collidePair(const StepContext<S>& step, Pair<S>& pair, CollisionStats& stats);
-  static bool meetsInStep(const StepContext<S>& step, Pair<S>& pair);
+  static std::uint8_t collidePair(const StepContext<S>& step, Pair<S>& pair, const Deciding& deciding,
+                                  CollisionStats& stats);
+  static Meeting meetsInStep(const StepContext<S>& step, Pair<S>& pair);
   void decidePairs(StepContext<S>& step, bool surfacesKnown, bool all);
-  static void decide(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown);
+  static void decide(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown, std::uint8_t found);
   static void touch(StepContext<S>& step, Pair<S>& pair, bool solvable);
-  bool noteLeft(const Pair<S>& pair, std::uint32_t index);
+  static bool hasLeft(const Pair<S>& pair);
   /// Takes over a collision and asks the callbacks: whether the pair shall be solved. MIS: arbiterUpdate
   static bool applyCollision(StepContext<S>& step, Pair<S>& pair);
   /// Calls separate where shapes came apart, and forgets contacts that stayed apart too long.
