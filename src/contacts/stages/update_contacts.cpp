@@ -302,7 +302,7 @@ bool UpdateContacts<S>::staysInTouch(const StepContext<S>& step, const Pair<S>& 
   const CollisionInfo<S> info = collide(placedA, placedB, pair.collisionId, nullptr, margin);
   if (margin == S(0)) return info.count > 0;
   for (int i = 0; i < info.count; ++i) {
-    if (dot(info.points[i].pointB - info.points[i].pointA, info.normal) <= S(0)) return true;
+    if (dot(info.points[i].pointB - info.points[i].pointA, info.normal) <= kTouching<S>) return true;
   }
   return false;
 }
