@@ -147,7 +147,8 @@ class Space {
   /// @throws ShapeNotFound, SpaceLocked
   /// MIS: spaceRemoveShape, bodyRemoveShape
   void remove(ShapeId id);
-  /// A body with all its shapes.
+  /// A body with all its shapes, in one go: separate is called for what they touch by rising ids, before any
+  /// of them is gone and while the body weighs what it did. Linear in its shapes and in all pairs.
   /// @throws as the two
   void removeWithShapes(BodyId id);
 

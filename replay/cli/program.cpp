@@ -11,7 +11,6 @@
 #include <iterator>
 
 #include <samestep/error.h>
-#include <samestep/recording.h>
 #include <samestep/workers.h>
 
 #include "recording/recording_format.h"
@@ -152,7 +151,7 @@ bool writeAll(const std::string& path, std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-std::vector<std::uint8_t> readRecording(const std::string& path) {
+std::vector<std::uint8_t> readRecording(const std::string& path, std::uint64_t most) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream || fs::is_directory(path)) throw Unusable(path + ": cannot be read");
   std::vector<std::uint8_t> bytes(kWorldAt);
@@ -166,8 +165,15 @@ std::vector<std::uint8_t> readRecording(const std::string& path) {
     throw Unusable(path + ": offset 0: " + seemsToBe(first));
   }
   recordingInfo(bytes);
-  bytes.insert(bytes.end(), std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  constexpr std::size_t kPiece = std::size_t{1} << 20;
+  while (stream && bytes.size() <= most) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + kPiece);
+    stream.read(reinterpret_cast<char*>(bytes.data() + before), static_cast<std::streamsize>(kPiece));
+    bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
+  }
   if (stream.bad()) throw Unusable(path + ": cannot be read");
+  if (bytes.size() > most) throw Unusable(path + ": longer than " + std::to_string(most) + " bytes");
   return bytes;
 }
 

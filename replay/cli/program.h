@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <samestep/kernel.h>
+#include <samestep/recording.h>
 #include <samestep/scalar.h>
 
 namespace samestep::program {
@@ -122,8 +123,10 @@ class StatusLine {
 std::int64_t milliseconds();
 
 /// A recording, whose first bytes are looked at before the rest is read.
-/// @throws Unusable for what is none, saying what it seems to be; FormatError
-std::vector<std::uint8_t> readRecording(const std::string& path);
+/// @param most  bytes; no more of a longer file are read
+/// @throws Unusable for what is none, saying what it seems to be, and for a longer one; FormatError
+std::vector<std::uint8_t> readRecording(const std::string& path,
+                                        std::uint64_t most = RecordingLimits().bytes);
 /// A regular file is written beside and moved into place, so that it is whole or not there; a link stays one,
 /// and what it leads to is written. A device or pipe is written through.
 /// @throws Unusable

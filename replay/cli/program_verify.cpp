@@ -49,7 +49,7 @@ struct Watch {
 
 int verifyFile(const std::string& file, VerifyOptions options, std::int64_t seconds) {
   try {
-    const std::vector<std::uint8_t> bytes = readRecording(file);
+    const std::vector<std::uint8_t> bytes = readRecording(file, options.limits.bytes);
     const std::int64_t start = milliseconds();
     Watch watch;
     if (seconds != 0) watch.end = start + seconds * 1000;
@@ -159,13 +159,26 @@ void addVerify(CLI::App& app, int& result) {
   auto expected = std::make_shared<ExpectedWords>();
   addExpectations(*word, *expected);
   // For recordings from strangers.
-  auto limits = std::make_shared<WorldLimits>();
+  auto limits = std::make_shared<RecordingLimits>();
   auto seconds = std::make_shared<std::int64_t>(0);
   word->add_option("--max-bodies", limits->bodies, "Refuse recordings of worlds with more bodies")
       ->capture_default_str();
   word->add_option("--max-shapes", limits->shapes, "Refuse those with more shapes")->capture_default_str();
   word->add_option("--max-pairs", limits->pairs, "Refuse those with more shapes near each other")
       ->check(CLI::Range(std::uint32_t{0}, kMostPairs))
+      ->capture_default_str();
+  word->add_option("--max-handlers", limits->handlers, "Refuse those with more collision handlers bound")
+      ->capture_default_str();
+  word->add_option("--max-iterations", limits->iterations,
+                   "Refuse those whose steps solve contacts more often, by sequential impulses")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  word->add_option("--max-substeps", limits->substeps, "Refuse those whose steps have more substeps")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  word->add_option("--max-commands", limits->commandsPerTick, "Refuse those with more commands before a step")
+      ->capture_default_str();
+  word->add_option("--max-bytes", limits->bytes, "Refuse files that are larger; no more of them is read")
       ->capture_default_str();
   word->add_option("--max-seconds", *seconds, "Give up after so many seconds for a recording")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30));

@@ -117,8 +117,9 @@ RecordingInfo recordingInfo(std::span<const std::uint8_t> bytes) {
 }
 
 template <Scalar S>
-RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const WorldLimits& limits)
+RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const RecordingLimits& limits)
     : bytes_(bytes) {
+  if (bytes.size() > limits.bytes) failFormat(limits.bytes, "more bytes than allowed");
   ByteReader reader(bytes);
   const RecordingInfo info = readInfo(reader);
   if (info.scalar != ScalarTraits<S>::kKind) failFormat(kScalarAt, "a recording of another scalar");
@@ -133,14 +134,24 @@ RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const W
   world_ = decodeWorld<S>(bytes, offset_, limits);
   ByteReader after(bytes, offset_);
   initialHash_ = CanonicalReader(after).next<std::uint64_t>();
-  const std::uint64_t first = after.offset();
+  offset_ = after.offset();
+  countItems(limits.commandsPerTick);
+}
 
-  offset_ = first;
+/// Looks at all items once, then goes back to the first.
+template <Scalar S>
+void RecordingReader<S>::countItems(std::uint32_t mostCommands) {
+  const std::uint64_t first = offset_;
   std::uint64_t afterStep = first;
+  std::uint32_t commands = 0;
   for (RecordingItem item = next(); item != RecordingItem::end; item = next()) {
-    if (item != RecordingItem::step) continue;
-    ++ticks_;
-    afterStep = offset_;
+    if (item == RecordingItem::step) {
+      ++ticks_;
+      afterStep = offset_;
+      commands = 0;
+    } else if (++commands > mostCommands) {
+      failFormat(itemOffset_, "more commands before a step than allowed");
+    }
   }
   if (ticks_ == 0) failFormat(first, "a recording without a step");
   if (itemOffset_ != afterStep) failFormat(afterStep, "a command after the last step");

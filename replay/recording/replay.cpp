@@ -9,7 +9,7 @@ namespace {
 
 /// Whether the ids that a spawn asks for are beyond the limits: room is taken up to the highest.
 template <Scalar S>
-bool asksForMore(const Command<S>& command, const WorldLimits& limits) {
+bool asksForMore(const Command<S>& command, const RecordingLimits& limits) {
   const auto* spawn = std::get_if<Spawn<S>>(&command);
   if (spawn == nullptr || !spawn->id.valid()) return false;
   for (const Shape<S>& shape : spawn->shapes) {
@@ -21,7 +21,7 @@ bool asksForMore(const Command<S>& command, const WorldLimits& limits) {
 }  // namespace
 
 template <Scalar S>
-Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const WorldLimits& limits)
+Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const RecordingLimits& limits)
     : bytes_(bytes),
       reader_(bytes, limits),
       wiring_(wiring),

@@ -128,7 +128,7 @@ class WorldReader {
   CanonicalReader read_;
   const WorldLimits& limits_;
   WorldState<S> world_;
-  WorldCheck<S> check_{world_};
+  WorldCheck<S> check_{world_, limits_};
 };
 
 /// Writes the fields and sections of one world.

@@ -55,9 +55,16 @@ template <Scalar S>
 class WorldCheck {
  public:
   /// @param world  its bodies are read before shapes are checked, and its shapes before pairs
-  explicit WorldCheck(const WorldState<S>& world) : world_(world) {}
+  WorldCheck(const WorldState<S>& world, const WorldLimits& limits) : world_(world), limits_(limits) {}
 
-  const char* flawOf(const Settings<S>& settings) const { return flawOfSettings(settings); }
+  const char* flawOf(const Settings<S>& settings) const {
+    if (const char* flaw = flawOfSettings(settings)) return flaw;
+    if (static_cast<std::uint32_t>(settings.iterations) > limits_.iterations) {
+      return "more iterations than allowed";
+    }
+    const bool few = static_cast<std::uint32_t>(settings.substeps) <= limits_.substeps;
+    return few ? nullptr : "more substeps than allowed";
+  }
   /// The count of steps: any is one that a Space can reach.
   const char* flawOf(std::uint64_t) const { return nullptr; }
   const char* flawOf(S timeStep) const {
@@ -85,6 +92,7 @@ class WorldCheck {
   bool hasGoodGeometry(const Shape<S>& shape);
 
   const WorldState<S>& world_;
+  const WorldLimits& limits_;
   // Worlds have many shapes of one geometry in a row, which is then looked at once.
   const Shape<S>* last_ = nullptr;
   S extent_{};
@@ -132,7 +140,7 @@ const char* WorldCheck<S>::flawOf(const Pair<S>& pair) const {
 template <Scalar S>
 class WorldFlaw {
  public:
-  WorldFlaw(const WorldState<S>& world, const WorldLimits& limits) : check_(world), limits_(limits) {}
+  WorldFlaw(const WorldState<S>& world, const WorldLimits& limits) : check_(world, limits), limits_(limits) {}
 
   template <class T>
   void operator()(const char*, const T& field) {

@@ -2,6 +2,7 @@
 #include "world/objects.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
@@ -28,6 +29,21 @@ template <Scalar S>
 void Objects<S>::erase(Context& world, BodyId id) {
   world.state.bodies.erase(id);
   world.derived.poses[id.index] = {};
+}
+
+template <Scalar S>
+void Objects<S>::eraseWithShapes(Context& world, BodyId id) {
+  Derived<S>& derived = world.derived;
+  derived.ensure(world.state);
+  ContactCallbacks<S>::dropPairs(world, id, {});
+  derived.shapesHashKnown = false;
+  for (std::uint32_t i = derived.firstShape[id.index]; i != kNone;) {
+    derived.dropBox(i);
+    world.state.shapes.erase(world.state.shapes.idAt(i));
+    i = std::exchange(derived.nextShape[i], kNone);
+  }
+  derived.firstShape[id.index] = derived.lastShape[id.index] = kNone;
+  erase(world, id);
 }
 
 template <Scalar S>

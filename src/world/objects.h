@@ -18,6 +18,8 @@ struct Objects {
   /// Makes a body just stored the Space's own.
   static void attach(Context& world, BodyId id);
   static void erase(Context& world, BodyId id);
+  /// A body with all its shapes, in one go: each pair and shape is looked at once.
+  static void eraseWithShapes(Context& world, BodyId id);
   static void setType(Context& world, BodyId id, BodyType type);
   static void accumulateMass(Context& world, BodyId id);
 

@@ -225,8 +225,7 @@ void Space<S>::removeWithShapes(BodyId id) {
   require<Fault::MainStaticBody>(id != state_.staticBody);
   LockGuard guard(*this);
   StepContext<S> world = contextOf();
-  while (firstShape(id) != ShapeId::kNoIndex) Objects<S>::erase(world, state_.shapes.idAt(firstShape(id)));
-  Objects<S>::erase(world, id);
+  Objects<S>::eraseWithShapes(world, id);
   guard.finish();
 }
 
@@ -359,7 +358,9 @@ template <Scalar S>
 void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>& handler) {
   requireUnlocked();
   require<Fault::ValueOutOfRange>(number != 0);
-  Wiring<S>::set(parts_->wiring.handlers, typename Wiring<S>::RegisteredHandler{number, handler});
+  Wiring<S>& wiring = parts_->wiring;
+  Wiring<S>::set(wiring.handlers, typename Wiring<S>::RegisteredHandler{number, handler});
+  wiring.bound.take(state_.handlers, wiring.handlers);
 }
 
 template <Scalar S>
@@ -389,6 +390,7 @@ void bind(StepContext<S> world, const HandlerBinding& binding) {
   } else {
     all.insert(place, binding);
   }
+  world.wiring.bound.take(all, world.wiring.handlers);
 }
 
 }  // namespace
@@ -533,6 +535,7 @@ template <Scalar S>
 void takeOver(StepContext<S> world) {
   ++world.wiring.worldsBroughtIn;
   WorldState<S>::sections(GiveTo{world.wiring.serial}, world.state);
+  world.wiring.bound.take(world.state.handlers, world.wiring.handlers);
   world.derived.shapesHashKnown = false;
   world.derived.forget();
   world.events.range.clear();

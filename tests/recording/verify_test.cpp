@@ -91,6 +91,37 @@ TYPED_TEST(VerifyTest, MoreBodiesShapesOrPairsThanAllowedAreRefused) {
   EXPECT_THROW(verifyWithin(limits), FormatError);
 }
 
+TYPED_TEST(VerifyTest, MoreBytesOrCommandsBeforeAStepThanAllowedAreRefused) {
+  using S = TypeParam;
+  Space<S> space;
+  const BodyId player = fillSmall(space);
+  Bytes bytes;
+  Recorder<S> recorder(space, kTick<S>, bytes, testWiring<S>());
+  for (int tick = 0; tick < 3; ++tick) {
+    for (int i = 0; i < 5; ++i) recorder.apply(SetAngularVelocity<S>{player, S(i)});
+    recorder.step();
+  }
+  recorder.finish();
+  const auto complaint = [&](const RecordingLimits& limits) -> std::string {
+    VerifyOptions options;
+    options.limits = limits;
+    try {
+      return verify<S>(bytes, testWiring<S>(), options).matches ? "" : "does not match";
+    } catch (const FormatError& error) {
+      return error.what();
+    }
+  };
+  RecordingLimits limits;
+  limits.bytes = bytes.size();
+  limits.commandsPerTick = 5;
+  EXPECT_EQ(complaint(limits), "");
+  limits.commandsPerTick = 4;
+  EXPECT_EQ(complaint(limits), "more commands before a step than allowed");
+  limits = {};
+  limits.bytes = bytes.size() - 1;
+  EXPECT_EQ(complaint(limits), "more bytes than allowed");
+}
+
 // A few bytes a body, and every body is near all others: 50 million pairs.
 TYPED_TEST(VerifyTest, AHeapOfTenThousandIsRefusedInItsFirstStep) {
   using S = TypeParam;

@@ -411,9 +411,12 @@ TYPED_TEST(SnapshotTest, LimitsOfTheCallerHold) {
   hashesOf(space, 40);
   const Bytes bytes = snapshotOf(space);
   const WorldState<S>& world = space.state();
-  const WorldLimits exact{world.bodies.slots(), world.shapes.slots(),
+  const WorldLimits exact{world.bodies.slots(),
+                          world.shapes.slots(),
                           static_cast<std::uint32_t>(world.pairs.size()),
-                          static_cast<std::uint32_t>(world.handlers.size())};
+                          static_cast<std::uint32_t>(world.handlers.size()),
+                          static_cast<std::uint32_t>(space.iterations()),
+                          static_cast<std::uint32_t>(space.substeps())};
   Space<S> into;
   registerNamedHandlers(into);
   const auto less = [&](std::uint32_t WorldLimits::*which) {
@@ -426,6 +429,8 @@ TYPED_TEST(SnapshotTest, LimitsOfTheCallerHold) {
   less(&WorldLimits::shapes);
   less(&WorldLimits::pairs);
   less(&WorldLimits::handlers);
+  less(&WorldLimits::iterations);
+  less(&WorldLimits::substeps);
   EXPECT_NO_THROW(loadSnapshot(into, bytes, OtherRevision::refuse, exact));
 }
 

@@ -24,6 +24,17 @@ struct RecordingInfo {
 /// @throws FormatError for what is no recording, and for one of another version
 RecordingInfo recordingInfo(std::span<const std::uint8_t> bytes);
 
+/// How large a recording from outside may be.
+struct RecordingLimits : WorldLimits {
+  RecordingLimits() = default;
+  RecordingLimits(const WorldLimits& world) : WorldLimits(world) {}
+
+  /// Of the whole recording. Some hours of a match of a dozen players are a tenth of it.
+  std::uint64_t bytes = std::uint64_t{1} << 30;
+  /// Between two steps.
+  std::uint32_t commandsPerTick = 1u << 16;
+};
+
 /// What stands in a recording after the first world.
 enum class RecordingItem : std::uint8_t {
   step = 0,     ///< A step was made; its hash.
@@ -35,10 +46,10 @@ enum class RecordingItem : std::uint8_t {
 template <Scalar S>
 class RecordingReader {
  public:
-  /// Checks all of it first: structure, numbers, checksum, that it has a step, that no command comes after
-  /// the last one, whose hash would cover it, and that nothing follows.
+  /// Checks all of it first: limits, structure, numbers, checksum, that it has a step, that no command comes
+  /// after the last one, whose hash would cover it, and that nothing follows.
   /// @throws FormatError
-  explicit RecordingReader(std::span<const std::uint8_t> bytes, const WorldLimits& limits = {});
+  explicit RecordingReader(std::span<const std::uint8_t> bytes, const RecordingLimits& limits = {});
   /// The command at `offset`, as offset() gave it for these bytes, which moves to the next item.
   /// @throws FormatError
   static Command<S> commandAt(std::span<const std::uint8_t> bytes, std::uint64_t& offset);
@@ -61,6 +72,7 @@ class RecordingReader {
   std::uint64_t hash() const { return hash_; }
 
  private:
+  void countItems(std::uint32_t mostCommands);
   void readEnd(class ByteReader& reader) const;
 
   std::span<const std::uint8_t> bytes_;

@@ -15,7 +15,7 @@ class Replay {
   /// Checks the whole recording first. The bytes must outlive it.
   /// @throws FormatError; MissingCallback for a world that needs functions the wiring does not register
   explicit Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring = {},
-                  const WorldLimits& limits = {});
+                  const RecordingLimits& limits = {});
 
   /// Steps in the recording, and steps made so far.
   std::uint64_t ticks() const { return reader_.ticks(); }
@@ -60,7 +60,7 @@ class Replay {
   std::span<const std::uint8_t> bytes_;
   RecordingReader<S> reader_;
   Wiring<S> wiring_;
-  WorldLimits limits_;
+  RecordingLimits limits_;
   Space<S> space_;
   bool (*filter_)(const Command<S>&, std::uint64_t, void*) = nullptr;
   void* filterData_ = nullptr;

@@ -49,7 +49,7 @@ inline constexpr std::uint64_t kMostFirstTick = 24 * 60 * 60 * 60;
 struct VerifyOptions {
   /// For recordings from strangers, what the game's own matches need: the pairs bound the memory and the time
   /// of a step.
-  WorldLimits limits{};
+  RecordingLimits limits{};
   Expectations expected{};
   /// A recording whose world had made more steps before is refused.
   std::uint64_t mostFirstTick = kMostFirstTick;

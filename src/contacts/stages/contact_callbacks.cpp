@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "contacts/stages/contact_callbacks.h"
 
+#include <algorithm>
+#include <span>
+
 #include "base/require_ieee.h"
 
 namespace samestep {
@@ -20,13 +23,7 @@ template <Scalar S>
 const CollisionHandler<S>* ContactCallbacks<S>::boundHandler(const Context& context,
                                                              HandlerBinding::Kind kind, CollisionType typeA,
                                                              CollisionType typeB) {
-  for (const HandlerBinding& binding : context.state.handlers) {
-    if (binding.kind == kind && binding.typeA == typeA && binding.typeB == typeB) {
-      const auto* entry = Wiring<S>::find(context.wiring.handlers, binding.number);
-      return entry == nullptr ? nullptr : &entry->handler;
-    }
-  }
-  return nullptr;
+  return context.wiring.bound.find(context.wiring.handlers, kind, typeA, typeB);
 }
 
 /// Finds who answers for an arbiter and turns it round where the handler's types say so. Null: the wildcards.
@@ -152,18 +149,27 @@ void ContactCallbacks<S>::postSolve(Context& context) {
 
 template <Scalar S>
 void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape) {
+  auto& pairs = context.state.pairs;
   const auto meant = [&](const Pair<S>& pair) {
-    const auto is = [&](ShapeId id) {
-      return shape.valid() ? id == shape : context.state.shapes.valueAt(id.index).body() == body;
-    };
-    return is(pair.a) || is(pair.b);
+    return !shape.valid() || pair.a == shape || pair.b == shape;
   };
-  for (Pair<S>& pair : context.state.pairs) {
+  const std::span<const std::uint32_t> ofBody = context.derived.pairsOf(context.state, body);
+  for (const std::uint32_t index : ofBody) {
+    Pair<S>& pair = pairs[index];
     if (!meant(pair) || pair.state == ArbiterState::apart || pair.state == ArbiterState::cached) continue;
     pair.state = ArbiterState::cached;
     separate(context, pair, true);
   }
-  std::erase_if(context.state.pairs, meant);
+  // Those between two that go move down together, each once.
+  auto to = pairs.end(), from = pairs.begin();
+  for (const std::uint32_t index : ofBody) {
+    const auto gone = pairs.begin() + static_cast<std::ptrdiff_t>(index);
+    if (!meant(*gone)) continue;
+    to = to == pairs.end() ? gone : std::copy(from, gone, to);
+    from = gone + 1;
+  }
+  if (to == pairs.end()) return;
+  pairs.erase(std::copy(from, pairs.end(), to), pairs.end());
   context.derived.bodyPairs.known = false;
 }
 

@@ -24,8 +24,9 @@ struct ContactCallbacks {
   static void separate(Context& context, Pair<S>& pair, bool removal);
   /// Calls postSolve for all pairs that were solved and touched.
   static void postSolve(Context& context);
-  /// Forgets the pairs of a body or of a shape, as if it had never touched anything; separate is called. The
-  /// Space is locked: what the callbacks want to add or remove has to wait. MIS: arbiterUnthread
+  /// Forgets the pairs of a body, or only those of one of its shapes, as if it had never touched anything;
+  /// separate is called for each by rising ids, before any is gone. The Space is locked: what the callbacks
+  /// want to add or remove has to wait. MIS: arbiterUnthread
   static void dropPairs(Context& context, BodyId body, ShapeId shape);
 
   // What the wildcard handler of the arbiter's A says; with `ofB` that of its B, which sees its own shape as
