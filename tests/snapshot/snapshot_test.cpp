@@ -415,8 +415,8 @@ TYPED_TEST(SnapshotTest, LimitsOfTheCallerHold) {
                           world.shapes.slots(),
                           static_cast<std::uint32_t>(world.pairs.size()),
                           static_cast<std::uint32_t>(world.handlers.size()),
-                          static_cast<std::uint32_t>(space.iterations()),
-                          static_cast<std::uint32_t>(space.substeps())};
+                          static_cast<std::uint32_t>(world.settings.iterations),
+                          static_cast<std::uint32_t>(world.settings.substeps)};
   Space<S> into;
   registerNamedHandlers(into);
   const auto less = [&](std::uint32_t WorldLimits::*which) {
