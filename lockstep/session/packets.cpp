@@ -52,13 +52,22 @@ void Session::Impl::poll(std::uint64_t time) {
 
 /// Ends the session of a player that has left once all have its last input and need its vote no more.
 void Session::Impl::finishLeaving() {
-  if ((live() & bit(settings.localSeat)) != 0) return;
+  const Seat self = settings.localSeat;
+  if ((live() & bit(self)) != 0) return;
   if (endsAt == 0) endsAt = now + settings.endAfter;
-  bool known = (change.voters() & bit(settings.localSeat)) == 0;
+  bool known = (change.voters() & bit(self)) == 0 || live() == 0;
   for (Seat seat = 0; seat < settings.players; ++seat) {
-    if (remote(seat) && ends[seat] == kNever) known &= links[seat].acked >= own().end();
+    // Who has left as well may have all and be gone, or still lack our last input.
+    const bool dropped = (change.voters() & bit(seat)) == 0;
+    const bool gone = ends[seat] != kNever && now - links[seat].lastHeard > settings.goneAfter;
+    if (remote(seat)) known &= dropped || gone || links[seat].acked >= own().end();
   }
-  if (known || live() == 0 || now >= endsAt) finish(EndReason::left);
+  if (!known && now < endsAt) return;
+  // The others may wait to hear that we have theirs.
+  for (Seat seat = 0; seat < settings.players; ++seat) {
+    if (remote(seat)) sendInputs(seat);
+  }
+  finish(EndReason::left);
 }
 
 void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {

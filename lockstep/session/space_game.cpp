@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/error.h>
 #include <samestep/fingerprint.h>
+#include <samestep/recorder.h>
 #include <samestep/space_game.h>
 #include <samestep/state_diff.h>
 #include <samestep/version.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <optional>
 #include <string>
 
 namespace samestep {
@@ -39,8 +41,22 @@ struct SpaceGame<S>::Impl {
     if (own.load != nullptr) own.load(slot, own.data);
   }
   void step(const TickInputs& inputs) {
-    apply(space, inputs, data);
-    space.step(timeStep);
+    if (!recorder) {
+      apply(space, inputs, data);
+      space.step(timeStep);
+      return;
+    }
+    recorder->input({inputBytes.data(), encodeInputs(inputs, inputBytes)});
+    recorder->step();
+  }
+  Wiring<S> wiring() {
+    Wiring<S> wiring;
+    wiring.data = this;
+    wiring.applyInput = [](Space<S>& world, std::span<const std::uint8_t> bytes, void* impl) {
+      std::array<PlayerInput, kMaxPlayers> players;
+      self(impl).apply(world, decodeInputs(bytes, players), self(impl).data);
+    };
+    return wiring;
   }
   std::uint64_t hash() const {
     return own.hash == nullptr ? space.hash() : mix(space.hash(), own.hash(own.data));
@@ -63,6 +79,8 @@ struct SpaceGame<S>::Impl {
   void* data;
   OwnState own;
   std::array<SavedSpace<S>, kSaveSlots> saved;
+  std::optional<Recorder<S>> recorder;
+  std::array<std::uint8_t, kMaxInputsBytes> inputBytes{};
 };
 
 template <Scalar S>
@@ -72,7 +90,7 @@ SpaceGame<S>::SpaceGame(Space<S>& space, S timeStep, ApplyInputs apply, void* da
   const bool all = own.save != nullptr && own.load != nullptr && own.hash != nullptr;
   const bool none = own.save == nullptr && own.load == nullptr && own.hash == nullptr;
   require<Fault::ValueOutOfRange>(all || none, "An OwnState has all of its functions, or none.");
-  impl_ = new Impl{space, timeStep, apply, data, own, {}};
+  impl_ = new Impl{space, timeStep, apply, data, own, {}, {}, {}};
 }
 
 template <Scalar S>
@@ -99,6 +117,23 @@ void SpaceGame<S>::describe(SessionSettings& settings) const {
   settings.revision = kSimulationRevision;
   settings.fingerprint = fingerprint<S>();
   settings.content = mix(mix(settings.content, impl_->hash()), bitsOf(impl_->timeStep));
+}
+
+template <Scalar S>
+void SpaceGame<S>::record(std::vector<std::uint8_t>& bytes) {
+  impl_->recorder.emplace(impl_->space, impl_->timeStep, bytes, impl_->wiring());
+}
+
+template <Scalar S>
+void SpaceGame<S>::finishRecording(Tick ticks) {
+  require<Fault::ValueOutOfRange>(impl_->recorder.has_value(), "This game is not recorded.");
+  impl_->recorder->finish(ticks);
+  impl_->recorder.reset();
+}
+
+template <Scalar S>
+Wiring<S> SpaceGame<S>::wiring() const {
+  return impl_->wiring();
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   addChart(app, result);
   addEnvelope(app, result);
   addNetsim(app, result);
+  addMatch(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -43,6 +43,8 @@ void addDraw(CLI::App& app, int& result);
 void addChart(CLI::App& app, int& result);
 void addEnvelope(CLI::App& app, int& result);
 void addNetsim(CLI::App& app, int& result);
+/// Nothing where the build is without samestep::transport.
+void addMatch(CLI::App& app, int& result);
 
 /// Adds --scalar with the scalars of this build.
 void addScalarOption(CLI::App& app, std::string& scalar);

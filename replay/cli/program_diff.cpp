@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
-#include <samestep/named_handlers.h>
 #include <samestep/replay_diff.h>
 
 #include "cli/program.h"
+#include "cli/program_wiring.h"
 
 namespace samestep::program {
 namespace {
@@ -78,7 +78,7 @@ int run(const Options& options, std::span<const std::uint8_t> a, std::span<const
     static_cast<Progress*>(data)->at(done, total);
     return true;
   };
-  const ReplayDifference difference = findDifference<S>(a, b, namedHandlerWiring<S>(), options.most, how);
+  const ReplayDifference difference = findDifference<S>(a, b, programWiring<S>(), options.most, how);
   progress.clear();
   if (difference.worldsDiffer) {
     reportWorlds(difference);

@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include <samestep/draw.h>
-#include <samestep/named_handlers.h>
 #include <samestep/replay.h>
 #include <samestep/scene.h>
 
 #include "cli/program.h"
+#include "cli/program_wiring.h"
 
 namespace samestep::program {
 namespace {
@@ -51,7 +51,7 @@ int drawScene(const Options& options) {
 
 template <Scalar S>
 int drawRecording(const Options& options, std::span<const std::uint8_t> bytes) {
-  Replay<S> replay(bytes, namedHandlerWiring<S>());
+  Replay<S> replay(bytes, programWiring<S>());
   if (options.tick > replay.ticks()) {
     throw Unusable(options.source + ": ends at tick " + std::to_string(replay.ticks()));
   }

@@ -7,6 +7,7 @@
 #include <samestep/workers.h>
 
 #include "cli/program.h"
+#include "cli/program_wiring.h"
 
 namespace samestep::program {
 namespace {
@@ -47,6 +48,18 @@ struct Watch {
   }
 };
 
+/// verify, with what this program knows of.
+VerifyResult verifyKnown(std::span<const std::uint8_t> bytes, const VerifyOptions& options) {
+  if (recordingInfo(bytes).scalar == ScalarKind::fixed) {
+    return verify<Fixed>(bytes, programWiring<Fixed>(), options);
+  }
+#ifndef SAMESTEP_FIXED_ONLY
+  return verify<double>(bytes, programWiring<double>(), options);
+#else
+  return verify(bytes, options);
+#endif
+}
+
 int verifyFile(const std::string& file, VerifyOptions options, std::int64_t seconds) {
   try {
     const std::vector<std::uint8_t> bytes = readRecording(file, options.limits.bytes);
@@ -57,7 +70,7 @@ int verifyFile(const std::string& file, VerifyOptions options, std::int64_t seco
     options.progress = [](std::uint64_t done, std::uint64_t total, void* data) {
       return static_cast<Watch*>(data)->after(done, total);
     };
-    const VerifyResult result = verify(bytes, options);
+    const VerifyResult result = verifyKnown(bytes, options);
     const std::int64_t took = milliseconds() - start;
     watch.progress.clear();
     if (result.stopped) throw Unusable(file + ": takes longer than " + std::to_string(seconds) + " s");

@@ -302,6 +302,19 @@ TEST_F(ProgramTest, NetsimPlaysMatchesThatEndTheSameEverywhere) {
   EXPECT_THAT(outcome.out, HasSubstr("4 matches, 0 failed"));
 }
 
+#ifdef SAMESTEP_TRANSPORT
+TEST_F(ProgramTest, AMatchOfProcessesLeavesRecordingsThatTheProgramReads) {
+  const Outcome outcome = run("match --players 2 --ticks 120 --speed 8 -o '" + file("match") + "'");
+
+  EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("2 recordings, each verified, all the same to the last byte"));
+  const std::string first = file("match/peer0.rec"), second = file("match/peer1.rec");
+  EXPECT_EQ(run("verify '" + first + "'").code, 0);
+  EXPECT_THAT(run("diff '" + first + "' '" + second + "'").out, HasSubstr("the same for 120 ticks"));
+  EXPECT_EQ(run("match --flip 2@5").code, 2);
+}
+#endif
+
 TEST_F(ProgramTest, AFailingSeedPrintsTheCommandThatRepeatsIt) {
   const std::string command = "netsim --seeds 3 --peers 4 --ticks 200 --fault loss,drift --plant flip";
   const Outcome outcome = run(command);

@@ -3,6 +3,7 @@
 
 #include <samestep/circle_shape.h>
 #include <samestep/error.h>
+#include <samestep/verify.h>
 #include <samestep/version.h>
 
 #include <array>
@@ -99,6 +100,72 @@ TEST(SpaceGameTest, RefusesAGameWithoutInputsAndHalfAnOwnState) {
 
   EXPECT_THROW(SpaceGame<Fixed>(space, Fixed(0), nullptr), ValueOutOfRange);
   EXPECT_THROW(SpaceGame<Fixed>(space, Fixed(0), Scored::apply, nullptr, half), ValueOutOfRange);
+}
+
+/// The inputs of two players for a tick, each with its own bytes.
+struct TwoInputs {
+  explicit TwoInputs(Tick at)
+      : bytes{static_cast<std::uint8_t>(at / 3), static_cast<std::uint8_t>(at / 7)},
+        players{PlayerInput{true, {&bytes[0], 1}, {}}, PlayerInput{true, {&bytes[1], 1}, {&bytes[0], 1}}},
+        inputs{at, players} {}
+  std::array<std::uint8_t, 2> bytes;
+  std::array<PlayerInput, 2> players;
+  TickInputs inputs;
+};
+
+TEST(SpaceGameTest, ARecordingOfARollbackMatchIsOfWhatWasPlayedInTheEnd) {
+  Scored plain, guessing;
+  std::vector<std::uint8_t> plainBytes, guessingBytes;
+  plain.game.record(plainBytes);
+  guessing.game.record(guessingBytes);
+  const Game straight = plain.game.functions(), rolled = guessing.game.functions();
+  for (Tick tick = 0; tick < 60; ++tick) straight.step(TwoInputs(tick).inputs, straight.data);
+  for (Tick tick = 0; tick < 60; tick += 6) {
+    rolled.save(0, rolled.data);
+    // Guessed wrongly, taken back and made again.
+    for (Tick guess = tick; guess < tick + 6; ++guess) {
+      TwoInputs wrong(guess + 100);
+      wrong.inputs.tick = guess;
+      rolled.step(wrong.inputs, rolled.data);
+    }
+    rolled.load(0, rolled.data);
+    for (Tick right = tick; right < tick + 6; ++right) rolled.step(TwoInputs(right).inputs, rolled.data);
+  }
+  plain.game.finishRecording(54);
+  guessing.game.finishRecording(54);
+
+  EXPECT_EQ(plainBytes, guessingBytes);
+  const VerifyResult result = verify<Fixed>(guessingBytes, guessing.game.wiring());
+  EXPECT_TRUE(result.matches);
+  EXPECT_EQ(result.ticks, 54u);
+}
+
+TEST(SpaceGameTest, InputsOfATickSurviveTheirBytes) {
+  const TwoInputs two(300);
+  std::array<std::uint8_t, kMaxInputsBytes> bytes;
+  const std::size_t size = encodeInputs(two.inputs, bytes);
+  std::array<PlayerInput, kMaxPlayers> players;
+
+  const TickInputs back = decodeInputs({bytes.data(), size}, players);
+
+  EXPECT_EQ(back.tick, 300u);
+  ASSERT_EQ(back.players.size(), 2u);
+  EXPECT_EQ(back.players[1].held[0], two.bytes[1]);
+  EXPECT_EQ(back.players[1].commands[0], two.bytes[0]);
+  EXPECT_EQ(encodeInputs(two.inputs, std::span(bytes).first(size - 1)), 0u);
+}
+
+TEST(SpaceGameTest, BytesThatAreNoInputsAreRefused) {
+  const TwoInputs two(300);
+  std::array<std::uint8_t, kMaxInputsBytes> bytes;
+  const std::size_t size = encodeInputs(two.inputs, bytes);
+  std::array<PlayerInput, kMaxPlayers> players;
+  for (std::size_t cut = 0; cut < size; ++cut) {
+    EXPECT_THROW(decodeInputs({bytes.data(), cut}, players), MalformedBytes) << cut;
+  }
+  EXPECT_THROW(decodeInputs({bytes.data(), size + 1}, players), MalformedBytes);
+  bytes[4] = kMaxPlayers + 1;
+  EXPECT_THROW(decodeInputs({bytes.data(), size}, players), MalformedBytes);
 }
 
 }  // namespace

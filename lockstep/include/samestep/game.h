@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -38,6 +39,15 @@ struct TickInputs {
   Tick tick = 0;
   std::span<const PlayerInput> players;
 };
+
+/// The most bytes that encodeInputs writes.
+inline constexpr std::size_t kMaxInputsBytes = 5 + kMaxPlayers * (3 + 255 + 255);
+/// Writes the inputs of a tick as bytes, the same on every machine.
+/// @return how many; 0 where they do not fit, or an input is longer than 255 bytes
+std::size_t encodeInputs(const TickInputs& inputs, std::span<std::uint8_t> into);
+/// Reads them; the inputs refer to the bytes.
+/// @throws MalformedBytes for what encodeInputs does not write
+TickInputs decodeInputs(std::span<const std::uint8_t> bytes, std::span<PlayerInput, kMaxPlayers> players);
 
 /// A game as four functions: the session asks, the game obeys. `data` is handed to each of them.
 ///

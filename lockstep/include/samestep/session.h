@@ -53,6 +53,8 @@ struct SessionSettings {
   std::uint32_t interruptedAfter = 500'000;
   /// A peer that is silent for so long is dropped by the others.
   std::uint32_t dropAfter = 3'000'000;
+  /// When two leave at about the same time, one waits for so long to hear from the other.
+  std::uint32_t goneAfter = 1'000'000;
   /// A match that cannot go on, for most of its players are gone, ends after so long.
   std::uint32_t endAfter = 15'000'000;
 };

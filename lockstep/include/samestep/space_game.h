@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <samestep/command.h>
 #include <samestep/game.h>
 #include <samestep/session.h>
 #include <samestep/space.h>
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace samestep {
 
@@ -44,6 +46,17 @@ class SpaceGame {
   /// hash of the Space as it is now with the time step. A settings' content is mixed in: that of the game's
   /// own data.
   void describe(SessionSettings& settings) const;
+
+  /// Records the match from its present world on, appending to `bytes`, which must outlive this: a replay
+  /// shows it as it was played in the end, without what was guessed. See Recorder; an OwnState is not in it.
+  void record(std::vector<std::uint8_t>& bytes);
+  /// Ends the recording after so many of its steps, for instance as many as Session::confirmed() says; it
+  /// then verifies with wiring().
+  /// @throws ValueOutOfRange where it is not recorded, or has no such step any more
+  void finishRecording(Tick ticks);
+  /// What a Replay of the recording needs: it applies the inputs by this game's function and data, which must
+  /// outlive it.
+  Wiring<S> wiring() const;
 
  private:
   struct Impl;
