@@ -42,7 +42,7 @@ struct Face {
 template <Scalar S>
 class Seam {
  public:
-  Seam(std::span<const SeamContact<S>> all, std::size_t which) : all_(all), which_(which), own_(all[which]) {}
+  Seam(const SeamContacts<S>& all, std::uint32_t which) : all_(all), which_(which), own_(all[which]) {}
 
   /// The face that the contact is one with, or -1.
   int face() const {
@@ -80,33 +80,32 @@ class Seam {
   /// beyond: in the corner of a room, floor and wall both go on.
   bool isCovered(const Face<S>& face, S place, S side) const {
     bool covered = false, mayEnd = false;
-    eachOther([&](const SeamContact<S>& other) {
-      if (!covers(other, face.before(place))) return;
+    const Vector<S> here = face.before(place);
+    eachOther(here, [&](const SeamContact<S>& other) {
+      if (!covers(other, here)) return;
       covered = true;
       mayEnd = mayEnd || dot(other.normal, face.along) * side > ratio<S>(1, 2);
     });
     if (!covered || !mayEnd) return covered;
-    const S beyond = clamp(place + kAlongFace<S> * side, S(0), face.length);
+    const Vector<S> beyond = face.before(clamp(place + kAlongFace<S> * side, S(0), face.length));
     bool goesOn = false;
-    eachOther([&](const SeamContact<S>& other) { goesOn = goesOn || covers(other, face.before(beyond)); });
+    eachOther(beyond, [&](const SeamContact<S>& other) { goesOn = goesOn || covers(other, beyond); });
     return goesOn;
   }
 
+  /// The others whose boxes are around a place.
   template <class Visit>
-  void eachOther(Visit&& visit) const {
-    for (std::size_t i = 0; i < all_.size(); ++i) {
-      if (i != which_ && all_[i].group == own_.group) visit(all_[i]);
-    }
-  }
-  static bool isNear(const SeamContact<S>& other, const Vector<S>& point) {
-    return contains(inflate(other.still->box, kSeamStep<S>), point);
+  void eachOther(const Vector<S>& point, Visit&& visit) const {
+    all_.around(point, [&](std::uint32_t i) {
+      if (i != which_) visit(all_[i]);
+    });
   }
   static bool covers(const SeamContact<S>& other, const Vector<S>& point) {
-    return isNear(other, point) && pointQuery(*other.still, point).distance <= kSeamStep<S>;
+    return pointQuery(*other.still, point).distance <= kSeamStep<S>;
   }
 
-  std::span<const SeamContact<S>> all_;
-  std::size_t which_;
+  const SeamContacts<S>& all_;
+  std::uint32_t which_;
   const SeamContact<S>& own_;
 };
 
@@ -171,8 +170,7 @@ bool Seam<S>::cornerAllows(int& instead) const {
   const Vector<S> point = shape.planes[vertex].v0 + own_.normal * shape.radius;
   bool allowed = true;
   S nearest(-1);
-  eachOther([&](const SeamContact<S>& other) {
-    if (!isNear(other, point)) return;
+  eachOther(point, [&](const SeamContact<S>& other) {
     const OpenDirections<S> open = openDirections(*other.still, point, own_.normal);
     if (!open.isThere) return;
     allowed = allowed && open.allows;
@@ -254,8 +252,32 @@ bool isOpenFace(const Seam<S>& seam, int face, const CollisionInfo<S>& info) {
 }  // namespace
 
 template <Scalar S>
-SeamVerdict judgeSeam(std::span<const SeamContact<S>> all, std::size_t which, S margin,
-                      CollisionInfo<S>& info) {
+void SeamContacts<S>::sort() {
+  BB<S> corners = entries_.front().contact.still->box;
+  // Of the lower left corners.
+  corners.right = corners.left;
+  corners.top = corners.bottom;
+  for (const Entry& entry : entries_) {
+    const BB<S>& box = entry.contact.still->box;
+    corners = {min(corners.left, box.left), min(corners.bottom, box.bottom), max(corners.right, box.left),
+               max(corners.top, box.bottom)};
+  }
+  byX_ = corners.right - corners.left >= corners.top - corners.bottom;
+  for (Entry& entry : entries_) {
+    const BB<S>& box = entry.contact.still->box;
+    entry.low = byX_ ? box.left : box.bottom;
+    entry.high = byX_ ? box.right : box.top;
+  }
+  const auto before = [](const Entry& x, const Entry& y) {
+    return x.low != y.low ? x.low < y.low : x.number < y.number;
+  };
+  std::sort(entries_.begin(), entries_.end(), before);  // total order: each has a number of its own
+  S highest = entries_.front().high;
+  for (Entry& entry : entries_) entry.highest = highest = max(highest, entry.high);
+}
+
+template <Scalar S>
+SeamVerdict judgeSeam(const SeamContacts<S>& all, std::uint32_t which, S margin, CollisionInfo<S>& info) {
   const SeamContact<S>& contact = all[which];
   if (contact.still->type == ShapeType::circle) return SeamVerdict::stays;
   const Seam<S> seam(all, which);
@@ -281,8 +303,9 @@ SeamVerdict judgeSeam(std::span<const SeamContact<S>> all, std::size_t which, S 
   return SeamVerdict::goes;
 }
 
-#define SAMESTEP_EACH_SCALAR \
-  template SeamVerdict judgeSeam<S>(std::span<const SeamContact<S>>, std::size_t, S, CollisionInfo<S>&);
+#define SAMESTEP_EACH_SCALAR      \
+  template class SeamContacts<S>; \
+  template SeamVerdict judgeSeam<S>(const SeamContacts<S>&, std::uint32_t, S, CollisionInfo<S>&);
 #include <samestep/each_scalar.h>
 
 }  // namespace samestep

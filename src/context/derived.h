@@ -220,6 +220,15 @@ struct Derived {
     return firstShape[id.index];
   }
 
+  /// Whether a body has several shapes; whether one that may move has.
+  bool isCompound(std::uint32_t body) const { return firstShape[body] != lastShape[body]; }
+  bool hasCompound() const {
+    for (std::uint32_t i = 0; i < firstShape.size(); ++i) {
+      if (isCompound(i) && poses[i].type != BodyType::staticBody) return true;
+    }
+    return false;
+  }
+
   /// Notes that a body may have been moved by hand.
   void touch(std::uint32_t body);
   void touchAll(const WorldState<S>& world) {

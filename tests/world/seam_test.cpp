@@ -57,6 +57,19 @@ class SeamTest : public ::testing::Test {
     space.body(bodyOf(space, id)).setMoment(S(1 << 29));
     return id;
   }
+  /// A body of four boxes in a row, as wide as high, that may turn.
+  static BodyId addSled(Space<S>& space, const Vector<S>& place, const Vector<S>& velocity, S mass = S(1)) {
+    Body<S> body;
+    body.setPosition(place);
+    body.setVelocity(velocity);
+    const BodyId id = space.add(body);
+    for (const int i : {2, 0, 3, 1}) {
+      Shape<S> part = boxShape<S>(id, BB<S>(S(i - 2), S(0), S(i - 1), S(1)));
+      part.setMass(mass);
+      space.add(part);
+    }
+    return id;
+  }
   /// Walks until it is past x.
   /// @return whether it arrives in the time that its speed says, and a tenth more
   static bool arrives(Space<S>& space, ShapeId walker, S x, S speed) {
@@ -108,6 +121,86 @@ TYPED_TEST(SeamTest, AWalkerArrivesAtAnySpeed) {
       }
     }
   }
+}
+
+// A sled of boxes has seams itself, over those of the ground.
+TYPED_TEST(SeamTest, ABodyOfBoxesSlidesOverSeams) {
+  using S = TypeParam;
+  for (const Solving& solving : kAll) {
+    for (const Ground ground : {Ground::boxes, Ground::segments, Ground::thickSegments}) {
+      for (const int speed : {1, 3, 6}) {
+        Space<S> space;
+        TestFixture::set(space, solving);
+        TestFixture::addFloor(space, ground, -4, 12);
+        const BodyId sled = TestFixture::addSled(space, {ratio<S>(1, 3), S(0)}, {S(speed), S(0)});
+        for (int i = 0; i < 64 * 6 / speed; ++i) space.step(kTick<S>);
+        const Body<S>& body = space.body(sled);
+        EXPECT_NEAR(double(body.position().x), 1.0 / 3 + 6, 0.05)
+            << "ground " << int(ground) << ", " << speed << " m/s, solver " << int(solving.kind);
+        EXPECT_NEAR(double(body.velocity().x), speed, 0.01 * speed);
+        EXPECT_NEAR(double(body.position().y), 0, 6e-3);
+      }
+    }
+  }
+}
+
+// On what moves itself: a heavy plank of boxes, free in space.
+TYPED_TEST(SeamTest, ABallAndAWalkerKeepTheirSpeedOnABodyOfBoxes) {
+  using S = TypeParam;
+  for (const Solving& solving : kAll) {
+    for (const bool round : {true, false}) {
+      Space<S> space;
+      TestFixture::set(space, solving);
+      TestFixture::addFloor(space, Ground::boxes, -8, 8);
+      const BodyId plank = TestFixture::addSled(space, {S(0), S(0)}, {}, S(1000));
+      for (int i = 0; i < 32; ++i) space.step(kTick<S>);
+      const S top = space.body(plank).position().y + S(1), start = ratio<S>(-14, 10);
+      const ShapeId id =
+          round ? addDisc<S>(space, {start, top + ratio<S>(1, 4)}, ratio<S>(1, 4), S(1), {S(3), S(0)})
+                : TestFixture::addWalker(space, start, S(3), top + ratio<S>(1, 2));
+      for (int i = 0; i < 58; ++i) space.step(kTick<S>);
+      const Body<S>& body = space.body(bodyOf(space, id));
+      EXPECT_NEAR(double(body.velocity().x), 3, 0.015)
+          << "round " << round << ", solver " << int(solving.kind);
+      EXPECT_NEAR(double(body.position().x), -1.4 + 3 * 58 / 64.0, 0.02) << round;
+      EXPECT_NEAR(double(body.position().y), double(top) + (round ? 0.25 : 0.5), 6e-3) << round;
+    }
+  }
+}
+
+// Two bodies of boxes: each has seams for the other.
+TYPED_TEST(SeamTest, ABodyOfBoxesSlidesOverAnother) {
+  using S = TypeParam;
+  for (const Solving& solving : kAll) {
+    Space<S> space;
+    TestFixture::set(space, solving);
+    TestFixture::addFloor(space, Ground::boxes, -8, 8);
+    const BodyId plank = TestFixture::addSled(space, {S(0), S(0)}, {}, S(1000));
+    for (int i = 0; i < 32; ++i) space.step(kTick<S>);
+    const S top = space.body(plank).position().y + S(1);
+    const BodyId sled = TestFixture::addSled(space, {ratio<S>(-7, 10), top}, {S(2), S(0)});
+    for (int i = 0; i < 48; ++i) space.step(kTick<S>);
+    EXPECT_NEAR(double(space.body(sled).velocity().x), 2, 0.01) << int(solving.kind);
+    EXPECT_NEAR(double(space.body(sled).position().x), -0.7 + 1.5, 0.02);
+    EXPECT_NEAR(double(space.body(sled).position().y), double(top), 6e-3);
+  }
+}
+
+// One that is larger than what it lies on, of which there are thousands: each asks only those near it.
+TYPED_TEST(SeamTest, AFloorOfThousandsOfPartsTakesNoLonger) {
+  using S = TypeParam;
+  Space<S> space;
+  TestFixture::set(space, kSoft[0]);
+  for (int i = 0; i < 2048; ++i) {
+    const S left = ratio<S>(i - 1024, 16);
+    space.add(boxShape<S>(space.staticBody(), BB<S>(left, S(-1), left + ratio<S>(1, 16), S(0))));
+  }
+  const ShapeId plank = addBox<S>(space, {S(0), ratio<S>(1, 2)}, S(120), S(1), S(1), {S(1), S(0)});
+  space.body(bodyOf(space, plank)).setMoment(S(1 << 29));
+  for (int i = 0; i < 16; ++i) space.step(kTick<S>);
+  const Body<S>& body = space.body(bodyOf(space, plank));
+  EXPECT_NEAR(double(body.velocity().x), 1, 2e-3);
+  EXPECT_NEAR(double(body.position().y), 0.5, 6e-3);
 }
 
 TYPED_TEST(SeamTest, SmallGapsAndStepsAreFlushToo) {

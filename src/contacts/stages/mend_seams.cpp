@@ -9,23 +9,19 @@
 namespace samestep {
 namespace {
 
-/// Of contacts between what does not move: in one group with all that is static.
-constexpr std::uint32_t kStatic = 0xffffffffu;
-
-/// A contact as its moving shape sees it.
+/// A contact as one of its shapes sees it.
 template <Scalar S>
-SeamContact<S> seamContactOf(const Derived<S>& derived, const Pair<S>& pair, std::uint32_t moving) {
-  const bool aMoves = pair.a.index == moving;
-  const std::uint32_t still = aMoves ? pair.b.index : pair.a.index;
-  const PlacedPose<S>& body = derived.poses[derived.traits[still].body];
+SeamContact<S> seamContactOf(const Derived<S>& derived, const Pair<S>& pair, std::uint32_t shape) {
+  const bool byA = pair.a.index == shape;
+  const std::uint32_t other = byA ? pair.b.index : pair.a.index;
+  const Frame<S>& frame = derived.poses[derived.traits[other].body].frame;
   const Vector<S> normal =
       rotate(pair.localNormal, derived.poses[derived.traits[pair.a.index].body].frame.rotation);
-  SeamContact<S> contact{&derived.placed[moving], &derived.placed[still]};
-  contact.group = body.type == BodyType::staticBody ? kStatic : derived.traits[still].body;
-  contact.normal = aMoves ? -normal : normal;
+  SeamContact<S> contact{&derived.placed[shape], &derived.placed[other]};
+  contact.normal = byA ? -normal : normal;
   contact.count = pair.count;
   for (int i = 0; i < pair.count; ++i) {
-    contact.points[i] = body.frame.toWorld(aMoves ? pair.contacts[i].anchorB : pair.contacts[i].anchorA);
+    contact.points[i] = frame.toWorld(byA ? pair.contacts[i].anchorB : pair.contacts[i].anchorA);
   }
   return contact;
 }
@@ -35,69 +31,102 @@ SeamContact<S> seamContactOf(const Derived<S>& derived, const Pair<S>& pair, std
 template <Scalar S>
 void MendSeams<S>::run(StepContext<S>& step, std::vector<std::uint8_t>& found) {
   collect(step, found);
-  const auto last = static_cast<std::uint32_t>(seams_.size());
-  for (std::uint32_t begin = 0; begin < last;) {
-    std::uint32_t end = begin + 1;
-    while (end < last && seams_[end].moving == seams_[begin].moving) ++end;
-    judge(step, found, begin, end);
-    begin = end;
+  changes_.clear();
+  const std::span<const Side> all(sides_);
+  for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
+    end = begin + 1;
+    while (end < all.size() && all[end].shape == all[begin].shape && all[end].group == all[begin].group)
+      ++end;
+    if (end - begin > 1) judge(step, found, all.subspan(begin, end - begin));
   }
+  apply(step, found);
 }
 
-/// Finds the contacts of shapes that have more than one.
+/// Finds the pairs that may lie at a seam, seen by either shape.
 template <Scalar S>
 void MendSeams<S>::collect(const StepContext<S>& step, const std::vector<std::uint8_t>& found) {
-  const Derived<S>& derived = step.derived;
-  const auto movingOf = [&](std::uint32_t i) {
-    const std::uint32_t a = step.state.pairs[i].a.index;
-    const bool aMoves = derived.poses[derived.traits[a].body].type == BodyType::dynamicBody;
-    return aMoves ? a : step.state.pairs[i].b.index;
-  };
   asked_.clear();
   for (std::uint32_t i = 0; i < found.size(); ++i) {
     if ((found[i] & ContactFound::kSeam) != 0) asked_.push_back(i);
   }
-  count_.resize(step.state.shapes.slots(), 0);
-  for (const std::uint32_t i : asked_) ++count_[movingOf(i)];
-  seams_.clear();
+  sides_.clear();
   for (const std::uint32_t i : asked_) {
-    const std::uint32_t moving = movingOf(i);
-    if (count_[moving] > 1) seams_.push_back({moving, i});
+    addSide(step, i, true);
+    addSide(step, i, false);
   }
-  for (const std::uint32_t i : asked_) count_[movingOf(i)] = 0;
-  std::sort(seams_.begin(), seams_.end());  // total order: no pair is in it twice
+  std::sort(sides_.begin(), sides_.end());  // total order: no side is in it twice
 }
 
-/// Judges those of one moving shape, all by what was found; what was judged in an earlier step stands as it
-/// stood.
 template <Scalar S>
-void MendSeams<S>::judge(StepContext<S>& step, std::vector<std::uint8_t>& found, std::uint32_t begin,
-                         std::uint32_t end) {
+void MendSeams<S>::addSide(const StepContext<S>& step, std::uint32_t pair, bool ofA) {
   const Derived<S>& derived = step.derived;
-  const auto isFresh = [&](std::uint32_t i) { return (found[seams_[i].pair] & ContactFound::kFresh) != 0; };
+  const Pair<S>& seen = step.state.pairs[pair];
+  const std::uint32_t shape = ofA ? seen.a.index : seen.b.index, other = ofA ? seen.b.index : seen.a.index;
+  const std::uint32_t body = derived.traits[other].body;
+  const bool isStatic = derived.poses[body].type == BodyType::staticBody;
+  if (!isStatic && !derived.isCompound(body)) return;
+  sides_.push_back({shape, isStatic ? kStatic : body, pair});
+}
+
+/// Judges those of one shape and group, all by what was found; what was judged in an earlier step stands as
+/// it stood.
+template <Scalar S>
+void MendSeams<S>::judge(const StepContext<S>& step, const std::vector<std::uint8_t>& found,
+                         std::span<const Side> sides) {
+  const auto isFresh = [&](const Side& side) { return (found[side.pair] & ContactFound::kFresh) != 0; };
+  if (std::none_of(sides.begin(), sides.end(), isFresh)) return;
   contacts_.clear();
-  bool anyFresh = false;
-  for (std::uint32_t i = begin; i < end; ++i) anyFresh = anyFresh || isFresh(i);
-  if (!anyFresh) return;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    contacts_.push_back(seamContactOf(derived, step.state.pairs[seams_[i].pair], seams_[i].moving));
+  for (const Side& side : sides) {
+    contacts_.add(seamContactOf(step.derived, step.state.pairs[side.pair], side.shape), side.pair);
   }
-  for (std::uint32_t i = begin; i < end; ++i) {
-    if (!isFresh(i)) continue;
-    Pair<S>& pair = step.state.pairs[seams_[i].pair];
-    CollisionInfo<S> info;
-    const SeamVerdict verdict = judgeSeam<S>(contacts_, i - begin, step.pairMargin(), info);
-    if (verdict == SeamVerdict::stays) continue;
-    // To be judged again.
-    pair.manifold = Manifold::unknown;
-    if (verdict == SeamVerdict::goes) {
-      found[seams_[i].pair] = 0;
+  contacts_.sort();
+  for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
+    const std::uint32_t pair = contacts_.numberOf(i);
+    if ((found[pair] & ContactFound::kFresh) == 0) continue;
+    Change change{pair, step.state.pairs[pair].a.index == sides.front().shape, SeamVerdict::stays, {}};
+    change.verdict = judgeSeam<S>(contacts_, i, step.pairMargin(), change.info);
+    if (change.verdict != SeamVerdict::stays) changes_.push_back(change);
+  }
+}
+
+/// Where both shapes say that a contact changes, it is the one with which they overlap less.
+template <Scalar S>
+void MendSeams<S>::apply(StepContext<S>& step, std::vector<std::uint8_t>& found) {
+  const auto before = [](const Change& x, const Change& y) {
+    return x.pair != y.pair ? x.pair < y.pair : x.byA < y.byA;
+  };
+  std::sort(changes_.begin(), changes_.end(), before);  // total order: a pair has two sides
+  for (std::size_t i = 0; i < changes_.size(); ++i) {
+    const Change& first = changes_[i];
+    if (i + 1 == changes_.size() || changes_[i + 1].pair != first.pair) {
+      applyOne(step, found[first.pair], first);
       continue;
     }
-    const PlacedPose<S>& a = derived.poses[derived.traits[pair.a.index].body];
-    const PlacedPose<S>& b = derived.poses[derived.traits[pair.b.index].body];
-    pushContacts(pair, a.type == BodyType::dynamicBody ? exchanged(info) : info, a.frame, b.frame);
+    const Change& second = changes_[++i];
+    const bool oneGoes = first.verdict == SeamVerdict::goes || second.verdict == SeamVerdict::goes;
+    const S apartFirst = oneGoes ? S(0) : leastSeparation(first.info);
+    const S apartSecond = oneGoes ? S(0) : leastSeparation(second.info);
+    if (oneGoes) {
+      applyOne(step, found[first.pair], first.verdict == SeamVerdict::goes ? first : second);
+    } else if (apartFirst != apartSecond) {
+      applyOne(step, found[first.pair], apartFirst > apartSecond ? first : second);
+    }
   }
+}
+
+template <Scalar S>
+void MendSeams<S>::applyOne(StepContext<S>& step, std::uint8_t& found, const Change& change) const {
+  Pair<S>& pair = step.state.pairs[change.pair];
+  // To be judged again.
+  pair.manifold = Manifold::unknown;
+  if (change.verdict == SeamVerdict::goes) {
+    found = 0;
+    return;
+  }
+  const Derived<S>& derived = step.derived;
+  const Frame<S>& a = derived.poses[derived.traits[pair.a.index].body].frame;
+  const Frame<S>& b = derived.poses[derived.traits[pair.b.index].body].frame;
+  pushContacts(pair, change.byA ? exchanged(change.info) : change.info, a, b);
 }
 
 #define SAMESTEP_EACH_SCALAR template class MendSeams<S>;

@@ -19,8 +19,8 @@ struct ContactFound {
   static constexpr std::uint8_t kSeam = 8;   ///< Between what moves and what contacts do not move.
 };
 
-/// Judges the contacts of shapes that meet several others which do not move against each other: see
-/// judgeSeam.
+/// Judges the contacts of shapes that meet several others which do not move against each other, those of one
+/// body or of all that are static: see judgeSeam.
 template <Scalar S>
 class MendSeams {
  public:
@@ -30,19 +30,33 @@ class MendSeams {
   std::span<const std::uint32_t> asked() const { return asked_; }
 
  private:
-  struct SeamPair {
-    std::uint32_t moving, pair;
-    friend auto operator<=>(const SeamPair&, const SeamPair&) = default;
+  /// A pair as one of its shapes sees it.
+  struct Side {
+    std::uint32_t shape;
+    std::uint32_t group;  ///< Of the other shape: its body, or kStatic.
+    std::uint32_t pair;
+    friend auto operator<=>(const Side&, const Side&) = default;
   };
+  /// Where a contact does not stay.
+  struct Change {
+    std::uint32_t pair;
+    bool byA;  ///< Whether A is the shape that sees the others.
+    SeamVerdict verdict;
+    CollisionInfo<S> info;
+  };
+  static constexpr std::uint32_t kStatic = 0xffffffffu;
 
   void collect(const StepContext<S>& step, const std::vector<std::uint8_t>& found);
-  void judge(StepContext<S>& step, std::vector<std::uint8_t>& found, std::uint32_t begin, std::uint32_t end);
+  void addSide(const StepContext<S>& step, std::uint32_t pair, bool ofA);
+  void judge(const StepContext<S>& step, const std::vector<std::uint8_t>& found, std::span<const Side> sides);
+  void apply(StepContext<S>& step, std::vector<std::uint8_t>& found);
+  void applyOne(StepContext<S>& step, std::uint8_t& found, const Change& change) const;
 
   std::vector<std::uint32_t> asked_;
-  // By the shape that moves; how many contacts a shape has; and those of one.
-  std::vector<SeamPair> seams_;
-  std::vector<std::uint32_t> count_;
-  std::vector<SeamContact<S>> contacts_;
+  // By shape and group; the contacts of one of both; and what changes.
+  std::vector<Side> sides_;
+  SeamContacts<S> contacts_;
+  std::vector<Change> changes_;
 };
 
 #define SAMESTEP_EACH_SCALAR extern template class MendSeams<S>;

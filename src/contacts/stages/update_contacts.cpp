@@ -31,6 +31,7 @@ void UpdateContacts<S>::collidePairs(StepContext<S>& step, const std::uint8_t* o
   step.derived.surfacesKnown = false;
   someLeft_ = false;
   found_.resize(count);
+  someCompound_ = step.derived.hasCompound();
   const bool handled = !step.state.handlers.empty();
   if (!step.team.helpsWith(count, StepContext<S>::kFewPairs)) {
     someLeft_ = collideRange(step, overlapping, 0, count, surfacesKnown, step.events.collisionStats);
@@ -76,7 +77,7 @@ bool UpdateContacts<S>::collideRange(StepContext<S>& step, const std::uint8_t* o
                                      CollisionStats& stats) {
   bool someLeft = false;
   const bool later = decidesLater(step);
-  const Deciding deciding{!later, surfacesKnown};
+  const Deciding deciding{!later, surfacesKnown, someCompound_};
   for (std::uint32_t i = begin; i < end; ++i) {
     Pair<S>& pair = step.state.pairs[i];
     if (pair.state == ArbiterState::firstCollision) pair.state = ArbiterState::normal;
@@ -145,8 +146,10 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
     meeting = meetsInStep(step, pair);
     if (meeting == Meeting::none) return 0;
   }
-  const bool seam = !sensor && movesA != movesB;
-  if (deciding.now && soft && movesA && movesB && shapeA.surface == shapeB.surface &&
+  const bool compound =
+      deciding.compounds && (derived.isCompound(shapeA.body) || derived.isCompound(shapeB.body));
+  const bool seam = !sensor && (movesA != movesB || (movesA && compound));
+  if (deciding.now && soft && !seam && movesA && movesB && shapeA.surface == shapeB.surface &&
       pair.state != ArbiterState::ignored) {
     const Surface<S>& surface = derived.surfaces[shapeA.surface];
     if (!same || !deciding.surfacesKnown) takeSurfaces(pair, surface, surface, {});

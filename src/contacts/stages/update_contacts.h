@@ -25,10 +25,10 @@ class UpdateContacts {
   static void settle(StepContext<S>& step);
 
  private:
-  /// Whether what is solved is decided with the collision, and whether pairs have what surfaces say from the
-  /// last step.
+  /// Whether what is solved is decided with the collision, whether pairs have what surfaces say from the last
+  /// step, and whether bodies of several shapes move.
   struct Deciding {
-    bool now, surfacesKnown;
+    bool now, surfacesKnown, compounds;
   };
 
   /// When shapes that have a contact meet.
@@ -58,6 +58,7 @@ class UpdateContacts {
   std::vector<std::uint8_t> found_;
   MendSeams<S> mendSeams_;
   bool someLeft_ = false;
+  bool someCompound_ = false;
 };
 
 #define SAMESTEP_EACH_SCALAR extern template class UpdateContacts<S>;
