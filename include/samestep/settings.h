@@ -36,7 +36,8 @@ struct Settings {
   std::uint8_t unused[2] = {};
   /// Sequential impulses: how often all contacts are solved in a step, 1 to 1000.
   std::int32_t iterations = 10;
-  /// Soft step: how many substeps a step has, 1 to 100.
+  /// Soft step: how many substeps a step has, 1 to 100. They are for contacts: what nothing touches moves as
+  /// constant forces have it, to rounding, with any number of them.
   std::int32_t substeps = 4;
   /// For how many steps a contact that came apart keeps its impulses.
   std::uint32_t collisionPersistence = 3;

@@ -225,9 +225,18 @@ TYPED_TEST(TouchingTest, AllThatIsToldOfAHeapTouches) {
       };
       space.step(kTick<S>);
       space.eachArbiter([&](Arbiter<S>& arbiter) {
+        const Pair<S>& pair = arbiter.pair();
+        const auto on = [&](ShapeId id, const Vector<S>& anchor) {
+          const Body<S>& body = before.bodies.valueAt(before.shapes.valueAt(id.index).body().index);
+          return body.position() + rotate(anchor, body.rotation());
+        };
         bool touched = false;
-        for (const Contact<S>& contact : arbiter.pair().contacts) {
+        for (int k = 0; k < pair.count; ++k) {
+          const Contact<S>& contact = pair.contacts[k];
           touched = touched || contact.normalTotal != S(0);
+          // Or just meet.
+          const Vector<S> between = on(pair.b, contact.anchorB) - on(pair.a, contact.anchorA);
+          touched = touched || max(abs(between.x), abs(between.y)) <= ratio<S>(1, 1 << 20);
         }
         touched = touched || shapesCollide(arbiter.shapeDataA(), placeOf(arbiter.shapeA()),
                                            arbiter.shapeDataB(), placeOf(arbiter.shapeB()))

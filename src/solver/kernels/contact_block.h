@@ -199,8 +199,8 @@ struct SoftConstants {
   typename N::Sum mostSum;
   /// The greatest gap and the greatest overlap that a kernel of limited range tells apart, m.
   typename N::Speed mostGap, mostOverlap;
-  /// The substep as the factor of a speed that gives the way, s.
-  typename N::Speed substep;
+  /// The substep and half of it as the factor of a speed that gives the way, s.
+  typename N::Speed substep, halfSubstep;
 };
 
 /// Passes over `count` blocks, in order.

@@ -135,7 +135,8 @@ class SoftUnits<S, PlainNumbers<S, kSpins>> {
   bool choose(const SoftSettings<S>&, const std::vector<SoftStart<S>>&, S) { return true; }
   SoftConstants<PlainNumbers<S, kSpins>> constants(const SoftSettings<S>& of, S mostSum) const {
     constexpr S kMost = S(1 << kMostNearBits);
-    return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, kMost, kMost, of.substep};
+    return {{of.softness[0], of.softness[1]}, of.perSubstep, of.pushSpeed, mostSum, kMost, kMost, of.substep,
+            of.substep * ratio<S>(1, 2)};
   }
 
   static Shares<S> shares(S massA, S massB) {
@@ -221,9 +222,11 @@ class SoftUnits<S, N> {
     to.mostSum = sum(mostSum, held);
     if constexpr (kWide) {
       to.substep = of.substep.raw() << finer_;
+      to.halfSubstep = to.substep / 2;
       to.mostGap = to.mostOverlap = std::int64_t{1} << (kMostNearBits + wayBits_);
     } else {
       to.substep = narrow(units::shifted(of.substep.raw(), 32 - finer_ - N::kUnitBits));
+      to.halfSubstep = narrow(units::shifted(of.substep.raw(), 33 - finer_ - N::kUnitBits));
       // What is farther apart is not reached within a substep at any speed in range; what overlaps more is
       // pushed apart as if it did not.
       const std::int64_t perSubstep = max(std::int64_t{to.perSubstep}, std::int64_t{1});

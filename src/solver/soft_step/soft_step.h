@@ -99,8 +99,9 @@ struct SoftStep {
     starts.push_back(start);
     return static_cast<std::uint32_t>(starts.size() - 1);
   }
-  /// Makes all substeps of a body that touches nothing.
-  void addFree(const SoftStart<S>& start);
+  /// Makes the step of a body that touches nothing.
+  /// @param pull  its acceleration: x, y, angular
+  void addFree(const SoftStart<S>& start, const S (&pull)[3], S dt);
 };
 
 #define SAMESTEP_EACH_SCALAR extern template struct SoftStep<S>;

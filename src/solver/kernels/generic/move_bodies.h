@@ -48,15 +48,30 @@ std::uint64_t driveBodies(SoftBody<N>* bodies, SoftDrive<N>* drives, SoftMarks* 
   return lanes.left();
 }
 
+/// Whether contacts have changed the velocity of a body in this substep.
+template <class L, class N>
+[[gnu::always_inline]] inline bool isHeld(const SoftBody<N>& body, const SoftDrive<N>& drive) {
+  bool held = false;
+  for (int k = 0; k < kRowUsed<L>; k += L::kWidth) {
+    held = L::differ(L::load(body.velocity + k), L::load(drive.base + k)) || held;
+  }
+  return held;
+}
+
+/// What nothing holds goes at the mean of its velocities before and after the substep, as under a constant
+/// force it does; what contacts hold goes where they make it go.
 template <class L, class N = typename L::Numbers>
-std::uint64_t moveBodies(SoftBody<N>* bodies, SoftDrive<N>*, SoftMarks* marks, std::uint32_t count,
+std::uint64_t moveBodies(SoftBody<N>* bodies, SoftDrive<N>* drives, SoftMarks* marks, std::uint32_t count,
                          const SoftConstants<N>& constants) {
   L lanes;
-  const auto substep = L::factor(constants.substep);
+  const auto substep = L::factor(constants.substep), half = L::factor(constants.halfSubstep);
   for (std::uint32_t i = 0; i < count; ++i) {
     SoftBody<N>& body = bodies[i];
+    const SoftDrive<N>& drive = drives[i];
+    const bool held = isHeld<L>(body, drive);
     for (int k = 0; k < kRowUsed<L>; k += L::kWidth) {
-      const auto moved = L::addProduct(L::load(body.velocity + k), substep, L::load(body.moved + k));
+      auto moved = L::addProduct(L::load(body.velocity + k), substep, L::load(body.moved + k));
+      if (!held) moved = L::addProduct(-L::load(drive.push + k), half, moved);
       L::store(body.moved + k, lanes.checkedWay(moved));
     }
     body.moved[3] = L::bend(body.moved[2], marks[i].bendBits);

@@ -96,26 +96,30 @@ void SoftStages<S>::takeBodies(StepContext<S>& step) {
     if (!bodies.aliveAt(i)) continue;
     Body<S>& body = bodies.valueAt(i);
     SoftStart<S> start;
+    S pull[3]{};
     if (body.type() == BodyType::staticBody) {
       // Nothing moves it, and no function is asked to.
     } else if (body.velocityFunc() != 0) [[unlikely]] {
       Integrate<S>::callVelocityFunc(step, i, keptInStep);
     } else if (body.isDynamic()) {
       const auto motion = BodyAccess<S>::acceleration(body, step.state.settings.gravity);
-      start.push[0] = motion.velocity.x * substep;
-      start.push[1] = motion.velocity.y * substep;
-      start.push[2] = motion.angularVelocity * substep;
+      pull[0] = motion.velocity.x;
+      pull[1] = motion.velocity.y;
+      pull[2] = motion.angularVelocity;
+      for (int k = 0; k < 3; ++k) start.push[k] = pull[k] * substep;
       start.kept = keptInSubstep;
     }
     BodyAccess<S>::clearForces(body);
-    takeBody(step.derived, i, body, start);
+    takeBody(step, i, start, pull);
   }
 }
 
 /// @param start  says already what pushes it
+/// @param pull   its acceleration
 template <Scalar S>
-void SoftStages<S>::takeBody(const Derived<S>& derived, std::uint32_t slot, const Body<S>& body,
-                             SoftStart<S>& start) {
+void SoftStages<S>::takeBody(const StepContext<S>& step, std::uint32_t slot, SoftStart<S>& start,
+                             const S (&pull)[3]) {
+  const Body<S>& body = step.state.bodies.valueAt(slot);
   std::uint32_t& index = solverIndex_[slot];
   if (body.type() == BodyType::staticBody) {
     if (index != kNone) soft_.frames[slot] = frameOf(body, 0, kAnyRadiusBits);
@@ -126,11 +130,11 @@ void SoftStages<S>::takeBody(const Derived<S>& derived, std::uint32_t slot, cons
   start.velocity[2] = body.angularVelocity();
   if (index == kNone) {
     index = kFree | static_cast<std::uint32_t>(soft_.free.size());
-    soft_.addFree(start);
+    soft_.addFree(start, pull, step.dt);
     return;
   }
   start.momentPerMass = body.momentPerMass();
-  if constexpr (FixedNumber<S>) start.radiusBits = radiusBits(derived, slot, body);
+  if constexpr (FixedNumber<S>) start.radiusBits = radiusBits(step.derived, slot, body);
   index = soft_.add(start);
   soft_.frames[slot] = frameOf(body, index, start.radiusBits);
 }

@@ -34,7 +34,7 @@ class SoftStages {
 
   void findGroups(const StepContext<S>& step);
   void takeBodies(StepContext<S>& step);
-  void takeBody(const Derived<S>& derived, std::uint32_t slot, const Body<S>& body, SoftStart<S>& start);
+  void takeBody(const StepContext<S>& step, std::uint32_t slot, SoftStart<S>& start, const S (&pull)[3]);
   SoftFrame<S> frameOf(const Body<S>& body, std::uint32_t index, int radiusBits) const;
   void takePairs(StepContext<S>& step);
   void layOutBlocks(std::uint32_t lanes);
