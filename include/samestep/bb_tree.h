@@ -10,6 +10,8 @@
 
 namespace samestep {
 
+class Budget;
+
 /// The broad phase: a spatial index that keeps, between calls, a tree of boxes and the sorted list of pairs
 /// that may touch. MIS section 15.
 ///
@@ -54,8 +56,10 @@ class BBTree final : public SpatialIndex<S> {
   /// Brings pairs() up to date with all changes of this tree and its static one. Costs O(pairs + changed log
   /// n), and nothing if nothing changed.
   /// @param most  how many there may be; beyond them the search ends at once, to begin anew next time
+  /// @param budget  asked now and then; null for none
   /// @return false if there are more, and pairs() lacks some
-  bool updatePairs(std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+  /// @throws Interrupted: the next call begins anew
+  bool updatePairs(std::uint64_t most = std::numeric_limits<std::uint64_t>::max(), Budget* budget = nullptr);
   /// Candidates as of the last updatePairs, sorted: every pair whose tight boxes, both grown by the margin,
   /// overlap, and some more. An object removed since may still be named.
   const std::vector<KeyPair>& pairs() const { return pairs_; }
@@ -101,7 +105,7 @@ class BBTree final : public SpatialIndex<S> {
   void markAllChanged();
   void refresh(IndexKey object);
   void dropChanged();
-  bool findChanged(const BBTree* resting, std::uint64_t most);
+  bool findChanged(const BBTree* resting, std::uint64_t most, Budget* budget);
   void sortFound();
   void mergeFound();
   void clearChanged();

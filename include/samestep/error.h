@@ -62,6 +62,8 @@ enum class Fault : std::uint8_t {
   IllegalId,          ///< An id that the caller gives to a new object and that its slot cannot have any more.
   UnsoundArithmetic,  ///< The processor is in a mode in which double gives other results.
   TooManyPairs,       ///< More shapes near each other than a Space may hold as pairs.
+  Interrupted,        ///< A call that was to end, see Space::setInterrupt, or may do no more work.
+  LeftMidway,  ///< The world of a Space in which an exception ended a change midway; see Space::isUsable.
 };
 
 /// The sentence a user reads: the MIS's own where it has one. MIS: message
@@ -139,6 +141,8 @@ using KernelUnavailable = FaultError<Fault::KernelUnavailable>;
 using IllegalId = FaultError<Fault::IllegalId>;
 using UnsoundArithmetic = FaultError<Fault::UnsoundArithmetic>;
 using TooManyPairs = FaultError<Fault::TooManyPairs>;
+using Interrupted = FaultError<Fault::Interrupted>;
+using LeftMidway = FaultError<Fault::LeftMidway>;
 
 /// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.
 class FormatError : public MalformedBytes {
@@ -207,13 +211,15 @@ template <Fault F>
 [[noreturn]] void failRevision(std::uint64_t offset, std::uint32_t found, std::uint32_t own);
 
 /// Runs an action on bytes from outside: what the engine refuses is the fault of those at `offset`, but not a
-/// missing callback.
+/// missing callback, nor that the caller wants it to end.
 template <class Action>
 void orFailFormat(std::uint64_t offset, Action&& action) {
 #if defined(__cpp_exceptions)
   try {
     action();
   } catch (const MissingCallback&) {
+    throw;
+  } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {
     failFormat(offset, error.what());

@@ -12,7 +12,7 @@ template <Scalar S>
 struct Derived;
 
 /// A world kept in memory, by Space::save, with what its Space had computed from it. Reusing one makes saving
-/// free of allocation.
+/// free of allocation. One into which a save failed holds nothing.
 template <Scalar S>
 class SavedSpace {
  public:
@@ -31,6 +31,9 @@ class SavedSpace {
 
  private:
   friend class Space<S>;
+  /// @param derived  null for none
+  void take(const WorldState<S>& state, const Derived<S>* derived);
+
   WorldState<S> state_;
   Derived<S>* derived_;  ///< Null only after a move.
 };

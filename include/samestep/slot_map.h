@@ -9,6 +9,7 @@
 
 #include <samestep/error.h>
 #include <samestep/id.h>
+#include <samestep/make_room.h>
 
 namespace samestep {
 
@@ -20,6 +21,11 @@ class FreeSlots {
   void reset(std::uint32_t slots) {
     words_.assign(wordsFor(slots), 0);
     summary_.assign(wordsFor(wordsFor(slots)), 0);
+  }
+  /// Makes room for so many.
+  void reserve(std::uint32_t slots) {
+    makeRoom(words_, wordsFor(slots));
+    makeRoom(summary_, wordsFor(wordsFor(slots)));
   }
   /// New slots are not free.
   void grow(std::uint32_t slots) {
@@ -107,8 +113,16 @@ class SlotMap {
                               id.generation > before);
   }
 
-  /// Stores the value under an id that nextId gave or that checkGiven has let pass.
+  /// Makes room for a slot, so that storing there takes no memory.
+  void reserve(std::uint32_t slot) {
+    makeRoom(values_, slot + std::size_t{1});
+    makeRoom(generations_, slot + std::size_t{1});
+    free_.reserve(slot + 1);
+  }
+  /// Stores the value under an id that nextId gave or that checkGiven has let pass. Where there is no memory,
+  /// nothing has changed.
   void store(IdType id, T value) {
+    reserve(id.index);
     const std::uint32_t before = slots();
     if (id.index >= before) {
       values_.resize(id.index + std::size_t{1});

@@ -14,6 +14,7 @@
 #include <samestep/error.h>
 #include <samestep/events.h>
 #include <samestep/id.h>
+#include <samestep/interrupt.h>
 #include <samestep/kernel.h>
 #include <samestep/query.h>
 #include <samestep/remark.h>
@@ -35,6 +36,11 @@ struct StepContext;
 /// Bodies and shapes are added by value and named by ids. What is iterated or reported comes in the order of
 /// ids. While a step or a query runs the Space is locked: what would add, remove or replace objects throws
 /// SpaceLocked; addPostStepCallback defers it.
+///
+/// A call that throws has changed nothing, but where an exception ended a change midway: no memory left
+/// within a step, an exception out of a callback, an Interrupt. The world is then not usable: what reads or
+/// changes it throws LeftMidway until restore, adopt or loadSnapshot has brought in a whole one. Never is
+/// there a wrong hash.
 template <Scalar S>
 class Space {
  public:
@@ -193,23 +199,27 @@ class Space {
   /// Calls visit(const Body<S>&) for each body by rising id. Locks the Space. MIS: spaceEachBody
   template <class Visit>
   void eachBody(Visit&& visit) {
+    requireUsable();
     LockGuard guard(*this);
     std::as_const(state_.bodies).each([&](BodyId, const Body<S>& body) { visit(body); });
     guard.finish();
   }
   template <class Visit>
   void eachBody(Visit&& visit) const {
+    requireUsable();
     state_.bodies.each([&](BodyId, const Body<S>& body) { visit(body); });
   }
   /// Calls visit(const Shape<S>&) for each shape by rising id. Locks the Space. MIS: spaceEachShape
   template <class Visit>
   void eachShape(Visit&& visit) {
+    requireUsable();
     LockGuard guard(*this);
     std::as_const(state_.shapes).each([&](ShapeId, const Shape<S>& shape) { visit(shape); });
     guard.finish();
   }
   template <class Visit>
   void eachShape(Visit&& visit) const {
+    requireUsable();
     state_.shapes.each([&](ShapeId, const Shape<S>& shape) { visit(shape); });
   }
   /// Calls visit(const Shape<S>&) for each shape of a body by rising id.
@@ -291,7 +301,8 @@ class Space {
   // Stepping.
 
   /// One step of dt seconds, in [0, 1]; 0 does nothing.
-  /// @throws SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
+  /// @throws Interrupted, and what callbacks throw: the world is then left midway, see the class; LeftMidway;
+  ///         SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
   ///         MissingCallback for a number without function; UnsoundArithmetic for double in another mode of
   ///         the processor; TooManyPairs, when position functions have run but before anything in the world
   ///         changes
@@ -326,6 +337,18 @@ class Space {
   /// @throws SpaceLocked; ValueOutOfRange
   void setMaxPairs(std::uint32_t pairs);
   std::uint32_t maxPairs() const;
+
+  /// Who is asked whether a call shall end: between the stages of a step, within them every few thousand
+  /// pairs, objects or calls of handlers, after each pass of a solver, and while a body of many shapes goes.
+  /// A step that ends so leaves the world midway, see the class. With workers it may be asked on one of
+  /// theirs. No saved world carries it, and no result depends on it.
+  void setInterrupt(const Interrupt& interrupt);
+  /// Work done by this Space so far, in units that take from 2 to 25 ns on the machine of
+  /// docs/performance.md. It follows from the calls alone, whoever computes.
+  std::uint64_t work() const;
+  /// Calls that go beyond so much, as work() counts, end as if they were interrupted: unlike a clock, in the
+  /// same place everywhere. Without limit until called.
+  void setMaxWork(std::uint64_t work);
 
   // Who computes. Wiring, like functions: no result depends on it, and no saved world carries it.
 
@@ -386,7 +409,15 @@ class Space {
   std::uint64_t hash() const;
   std::uint64_t hash(BodyId id) const;
   std::uint64_t hash(ShapeId id) const;
-  const WorldState<S>& state() const { return state_; }
+  /// @throws LeftMidway
+  const WorldState<S>& state() const {
+    requireUsable();
+    return state_;
+  }
+  /// Whether the world is whole: see the class.
+  bool isUsable() const { return !leftMidway_; }
+  /// For who makes one change of several calls: says that an exception ended it midway.
+  void leaveMidway() { leftMidway_ = true; }
 
   /// Copies the world into memory; callbacks waiting and functions registered are not part of it.
   /// @throws SpaceLocked
@@ -429,7 +460,11 @@ class Space {
     Space* space_;
   };
 
+  void requireUsable() const { require<Fault::LeftMidway>(!leftMidway_); }
   void requireUnlocked() const;
+  /// Brings in a world whole, or leaves this one midway.
+  template <class Bring>
+  void bringIn(const WorldState<S>& state, Bring&& bring);
   StepContext<S> contextOf(S dt = S(0));
   std::uint32_t firstShape(BodyId id) const;
   std::uint32_t nextShape(std::uint32_t index) const;
@@ -439,6 +474,7 @@ class Space {
   WorldState<S> state_;
   SpaceParts<S>* parts_;
   std::int32_t locked_ = 0;
+  bool leftMidway_ = false;
 };
 
 #define SAMESTEP_EACH_SCALAR extern template class Space<S>;

@@ -44,8 +44,9 @@ struct Watch {
 
   bool after(std::uint64_t done, std::uint64_t total) {
     progress.at(done, total);
-    return end == 0 || milliseconds() < end;
+    return !isOver();
   }
+  bool isOver() const { return end != 0 && milliseconds() >= end; }
 };
 
 /// verify, with what this program knows of.
@@ -70,6 +71,9 @@ int verifyFile(const std::string& file, VerifyOptions options, std::int64_t seco
     options.progress = [](std::uint64_t done, std::uint64_t total, void* data) {
       return static_cast<Watch*>(data)->after(done, total);
     };
+    if (seconds != 0) {
+      options.interrupt = {[](void* data) { return static_cast<const Watch*>(data)->isOver(); }, &watch};
+    }
     const VerifyResult result = verifyKnown(bytes, options);
     const std::int64_t took = milliseconds() - start;
     watch.progress.clear();
@@ -193,6 +197,9 @@ void addVerify(CLI::App& app, int& result) {
       ->capture_default_str();
   word->add_option("--max-bytes", limits->bytes, "Refuse files that are larger; no more of them is read")
       ->capture_default_str();
+  word->add_option("--max-work", limits->work,
+                   "Refuse those that take more work, in units of about 10 ns: the same on every machine")
+      ->check(CLI::Range(std::uint64_t{1}, ~std::uint64_t{0}));
   word->add_option("--max-seconds", *seconds, "Give up after so many seconds for a recording")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30));
   word->callback([files, compute, limits, seconds, expected, word, &result] {

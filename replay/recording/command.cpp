@@ -49,6 +49,16 @@ Vector<S> endOfArm(const Body<S>& body, const Vector<S>& arm) {
   return body.worldCenter() + arm;
 }
 
+/// Stands where a command is several changes: memory may run out between them.
+template <Scalar S>
+struct Whole {
+  Space<S>& space;
+  bool done = false;
+  ~Whole() {
+    if (!done) space.leaveMidway();
+  }
+};
+
 /// Does one kind of command each.
 template <Scalar S>
 struct Applier {
@@ -90,9 +100,11 @@ struct Applier {
     addShapes(trial, trial.add(c.body), given ? byId(c.shapes) : c.shapes, false);
 
     const BodyId id = given ? space.add(c.body, c.id) : space.add(c.body);
+    Whole whole{space};
     addShapes(space, id, c.shapes, given);
     // The velocity is that of the centre of mass, which the shapes have moved.
     if (c.body.type() != BodyType::staticBody) space.body(id).setVelocity(c.body.velocity());
+    whole.done = true;
     return id;
   }
   BodyId operator()(const Remove& c) const {

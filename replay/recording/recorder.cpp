@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/recorder.h>
 
+#include <samestep/make_room.h>
 #include <samestep/version.h>
 
 #include <memory>
@@ -116,8 +117,9 @@ struct Recorder<S>::Impl {
   }
 
   void give(std::size_t bytes) {
-    XXH3_64bits_update(&checksum, piece.data(), bytes);
+    // First, for it may throw: they are then given once more.
     sink({piece.data(), bytes}, data);
+    XXH3_64bits_update(&checksum, piece.data(), bytes);
     piece.erase(piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(bytes));
     given += bytes;
   }
@@ -150,13 +152,18 @@ struct Recorder<S>::Impl {
     require<Fault::ForeignWorld>(!checking || space.hash() == lastHash,
                                  "The world was changed by something that was not recorded.");
   }
-  /// Applies by `apply` what is then written with `written`.
+  /// Writes `written`, then does what it says: what cannot be written is not done, and what cannot be done is
+  /// cut off again.
   template <class Apply, class Written>
   BodyId record(CommandKind kind, const Written& written, Apply&& apply) {
+    struct CutOff {
+      std::vector<std::uint8_t>& piece;
+      std::size_t end;
+      ~CutOff() { piece.resize(end); }
+    };
     followRestore(0);
     check();
-    const BodyId id = apply();
-    if (checking) lastHash = space.hash();
+    CutOff kept{piece, piece.size()};
     write.put(RecordingItem::command);
     write.put(kind);
     CommandWriter<S> writer{write, pieceSink};
@@ -165,13 +172,19 @@ struct Recorder<S>::Impl {
     } else {
       writer(written);
     }
+    const BodyId id = apply();
+    kept.end = piece.size();
+    if (checking) lastHash = space.hash();
     return id;
   }
+  /// So that recordStep takes no memory.
+  void makeRoomForStep() { makeRoom(piece, piece.size() + sizeof(RecordingItem) + sizeof lastHash); }
   void confirm(std::uint64_t upTo) {
     oldest = max(oldest, upTo);
     flushWhenFull();
   }
   void end() {
+    makeRoom(piece, piece.size() + sizeof(RecordingItem) + 2 * sizeof(std::uint64_t));
     finished = true;
     write.put(RecordingItem::end);
     write.put(ticks);
@@ -251,6 +264,7 @@ template <Scalar S>
 std::uint64_t Recorder<S>::step() {
   impl_->followRestore(0);
   impl_->check();
+  impl_->makeRoomForStep();
   impl_->space.step(impl_->timeStep);
   return impl_->recordStep();
 }
@@ -262,6 +276,7 @@ std::uint64_t Recorder<S>::stepped() {
                                "stepped() is called once after each step.");
   require<Fault::ForeignWorld>(impl_->space.currentTimeStep() == impl_->timeStep,
                                "The step was not as long as those of the recording.");
+  impl_->makeRoomForStep();
   return impl_->recordStep();
 }
 

@@ -117,7 +117,8 @@ RecordingInfo recordingInfo(std::span<const std::uint8_t> bytes) {
 }
 
 template <Scalar S>
-RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const RecordingLimits& limits)
+RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const RecordingLimits& limits,
+                                    const Interrupt& interrupt)
     : bytes_(bytes) {
   if (bytes.size() > limits.bytes) failFormat(limits.bytes, "more bytes than allowed");
   ByteReader reader(bytes);
@@ -135,16 +136,21 @@ RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const R
   ByteReader after(bytes, offset_);
   initialHash_ = CanonicalReader(after).next<std::uint64_t>();
   offset_ = after.offset();
-  countItems(limits.commandsPerTick);
+  countItems(limits.commandsPerTick, interrupt);
 }
+
+/// So many are read between two questions whether to go on: a spawn of many shapes is the longest.
+constexpr std::uint32_t kItemsAtOnce = 64;
 
 /// Looks at all items once, then goes back to the first.
 template <Scalar S>
-void RecordingReader<S>::countItems(std::uint32_t mostCommands) {
+void RecordingReader<S>::countItems(std::uint32_t mostCommands, const Interrupt& interrupt) {
   const std::uint64_t first = offset_;
   std::uint64_t afterStep = first;
   std::uint32_t commands = 0;
+  std::uint32_t items = 0;
   for (RecordingItem item = next(); item != RecordingItem::end; item = next()) {
+    require<Fault::Interrupted>(++items % kItemsAtOnce != 0 || !interrupt.isWanted());
     if (item == RecordingItem::step) {
       ++ticks_;
       afterStep = offset_;

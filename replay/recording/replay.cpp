@@ -21,15 +21,35 @@ bool asksForMore(const Command<S>& command, const RecordingLimits& limits) {
 }  // namespace
 
 template <Scalar S>
-Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const RecordingLimits& limits)
+Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const RecordingLimits& limits,
+                  const Interrupt& interrupt)
     : bytes_(bytes),
-      reader_(bytes, limits),
+      interrupt_(interrupt),
+      reader_(bytes, limits, interrupt),
       wiring_(wiring),
       limits_(limits),
       recordedHash_(reader_.initialHash()) {
   if (wiring_.connect != nullptr) wiring_.connect(space_, wiring_.data);
   space_.setMaxPairs(limits.pairs);
+  space_.setInterrupt(interrupt);
+  space_.setMaxWork(limits.work);
   space_.adopt(reader_.initialWorld());
+}
+
+/// Does what the item read last says.
+template <Scalar S>
+template <class Action>
+void Replay<S>::act(Action&& action) {
+#if defined(__cpp_exceptions)
+  try {
+    orFailFormat(reader_.offset(), action);
+  } catch (const Interrupted&) {
+    if (space_.work() > limits_.work) failFormat(reader_.offset(), "more work than allowed");
+    throw;
+  }
+#else
+  action();
+#endif
 }
 
 template <Scalar S>
@@ -45,8 +65,9 @@ bool Replay<S>::applyCommands() {
       ended_ = true;
       return false;
     }
+    require<Fault::Interrupted>(!interrupt_.isWanted());
     // Recorded commands were accepted once.
-    orFailFormat(reader_.offset(), [&] { applyCommand(space_, reader_.command(), wiring_); });
+    act([&] { applyCommand(space_, reader_.command(), wiring_); });
     if (space_.state().bodies.slots() > limits_.bodies || space_.state().shapes.slots() > limits_.shapes) {
       failFormat(reader_.offset(), "more bodies or shapes than allowed");
     }
@@ -61,7 +82,7 @@ template <Scalar S>
 bool Replay<S>::step() {
   if (!applyCommands()) return false;
   applied_ = false;
-  orFailFormat(reader_.offset(), [&] { space_.step(reader_.timeStep()); });
+  act([&] { space_.step(reader_.timeStep()); });
   recordedHash_ = reader_.hash();
   ++tick_;
   return true;

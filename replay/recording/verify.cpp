@@ -48,20 +48,18 @@ struct CommandWatch {
   }
 };
 
-}  // namespace
-
+/// Replays all of it.
 template <Scalar S>
-VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
-                    const VerifyOptions& options) {
-  Replay<S> replay(bytes, wiring, options.limits);
+void verifyInto(VerifyResult& result, std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
+                const VerifyOptions& options) {
+  Replay<S> replay(bytes, wiring, options.limits, options.interrupt);
   replay.space().forceKernel(options.kernel);
   replay.space().setWorkers(options.workers, Sharing::always);
-  VerifyResult result;
   result.ticks = replay.ticks();
   if (replay.space().stamp() > options.mostFirstTick)
     failFormat(kWorldAt, "begins after more steps than allowed");
   result.unexpected = unexpectedIn(replay, options.expected);
-  if (result.unexpected != nullptr) return result;
+  if (result.unexpected != nullptr) return;
   CommandWatch<S> watch{options.expected.commands, result};
   replay.setCommandFilter(CommandWatch<S>::filter, &watch);
   do {
@@ -69,14 +67,31 @@ VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring
     result.computedHash = replay.space().hash();
     if (result.recordedHash != result.computedHash) {
       result.firstWrongTick = replay.tick();
-      return result;
+      return;
     }
     if (options.progress != nullptr && !options.progress(replay.tick(), replay.ticks(), options.data)) {
       result.stopped = true;
-      return result;
+      return;
     }
   } while (replay.step());
   result.matches = result.unexpected == nullptr;
+}
+
+}  // namespace
+
+template <Scalar S>
+VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
+                    const VerifyOptions& options) {
+  VerifyResult result;
+#if defined(__cpp_exceptions)
+  try {
+    verifyInto(result, bytes, wiring, options);
+  } catch (const Interrupted&) {
+    result.stopped = true;
+  }
+#else
+  verifyInto(result, bytes, wiring, options);
+#endif
   return result;
 }
 

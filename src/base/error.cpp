@@ -114,6 +114,10 @@ const char* message(Fault fault) {
       return "A given id must have an odd generation, higher than any its slot has had.";
     case Fault::UnsoundArithmetic:
       return "The processor is in a mode in which double gives other results.";
+    case Fault::Interrupted:
+      return "The call was to end; a world that it was changing must be restored.";
+    case Fault::LeftMidway:
+      return "A call that failed left this world midway: restore one, or bring one in, before anything else.";
     case Fault::TooManyPairs:
       return "More shapes are near each other than this Space may hold as pairs; see Space::setMaxPairs.";
   }

@@ -4,9 +4,16 @@
 #include <algorithm>
 #include <bit>
 
+#include <samestep/make_room.h>
+
+#include "base/budget.h"
+
 namespace samestep {
 
 namespace {
+
+/// Whoever may end a search is asked when so many pairs more are found.
+constexpr std::size_t kFoundAtOnce = 1 << 16;
 
 constexpr std::uint8_t kMovedHere = 1;
 constexpr std::uint8_t kMovedInStatic = 2;
@@ -101,6 +108,11 @@ void BBTree<S>::placeMoving(IndexKey key, const BB<S>& tight, const Vector<S>& v
 
 template <Scalar S>
 void BBTree<S>::place(IndexKey key, const BB<S>& room) {
+  // Each key is noted once: removing it takes no memory.
+  if (key >= changes_.size()) {
+    changes_.resize(key + 1, 0);
+    makeRoom(changed_, changes_.size());
+  }
   const GridBox box = gridBox(inflate(room, margin_));
   if (tree_.contains(key)) {
     tree_.move(key, box);
@@ -140,7 +152,8 @@ void BBTree<S>::clear() {
   tree_.clear();
   rooms_.clear();
   pairs_.clear();
-  clearChanged();
+  std::fill(changes_.begin(), changes_.end(), std::uint8_t{0});
+  changed_.clear();
   pairedWith_ = nullptr;
   if (BBTree* dynamic = this->dynamicIndex() == nullptr ? nullptr : this->dynamicIndex()->asTree()) {
     dynamic->pairedWith_ = nullptr;
@@ -153,6 +166,7 @@ void BBTree<S>::copyFrom(const BBTree& other) {
   rooms_ = other.rooms_;
   changes_ = other.changes_;
   changed_ = other.changed_;
+  makeRoom(changed_, changes_.size());
   pairs_ = other.pairs_;
   margin_ = other.margin_;
   const bool known = other.pairedWith_ != nullptr && other.pairedWith_ == other.staticIndex();
@@ -166,7 +180,7 @@ std::uint64_t BBTree<S>::bytes() const {
 }
 
 template <Scalar S>
-bool BBTree<S>::updatePairs(std::uint64_t most) {
+bool BBTree<S>::updatePairs(std::uint64_t most, Budget* budget) {
   BBTree* resting = staticTree();
   if (pairedWith_ != resting) {
     pairs_.clear();
@@ -180,7 +194,7 @@ bool BBTree<S>::updatePairs(std::uint64_t most) {
     for (const IndexKey key : resting->changed_) changes_[key] |= kMovedInStatic;
   }
   dropChanged();
-  if (!findChanged(resting, most)) {
+  if (!findChanged(resting, most, budget)) {
     found_ = {};
     return false;
   }
@@ -213,9 +227,16 @@ void BBTree<S>::dropChanged() {
 // Each pair once: of two changed leaves of this tree the lower key finds it, of a changed one here and one in
 // the static tree the one here.
 template <Scalar S>
-bool BBTree<S>::findChanged(const BBTree* resting, std::uint64_t most) {
+bool BBTree<S>::findChanged(const BBTree* resting, std::uint64_t most, Budget* budget) {
   found_.clear();
-  const auto tooMany = [&] { return pairs_.size() + found_.size() > most; };
+  std::size_t asked = 0;
+  const auto tooMany = [&] {
+    if (budget != nullptr && found_.size() - asked >= kFoundAtOnce) {
+      asked = found_.size();
+      budget->pay(0);
+    }
+    return pairs_.size() + found_.size() > most;
+  };
   for (const IndexKey key : changed_) {
     if (!tree_.contains(key)) continue;
     tree_.queryAround(key, [&](IndexKey other) {

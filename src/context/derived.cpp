@@ -17,6 +17,12 @@ void LocalPlanes<S>::clear() {
 }
 
 template <Scalar S>
+void LocalPlanes<S>::reserve(std::uint32_t count) {
+  makeRoom(geometries_, geometries_.size() + 1);
+  makeRoom(planes_, planes_.size() + count);
+}
+
+template <Scalar S>
 std::uint32_t LocalPlanes<S>::use(const Plane<S>* planes, std::uint32_t count) {
   static_assert(std::is_trivially_copyable_v<Plane<S>>);
   // By bits: zeros of two signs are equal, and not the same.
@@ -50,10 +56,10 @@ void LocalPlanes<S>::release(std::uint32_t geometry) {
 
 template <Scalar S>
 void Derived<S>::copyFrom(const Derived& other) {
-  cached = other.cached;
+  cached = false;
   shapesHashKnown = other.shapesHashKnown;
   shapesHash = other.shapesHash;
-  if (!cached) return;
+  if (!other.cached) return;
   poses = other.poses;
   firstShape = other.firstShape;
   lastShape = other.lastShape;
@@ -63,7 +69,6 @@ void Derived<S>::copyFrom(const Derived& other) {
   around = other.around;
   surfaces = other.surfaces;
   surfacesKnown = other.surfacesKnown;
-  leftMidway = other.leftMidway;
   planeOffset = other.planeOffset;
   planes = other.planes;
   localPlanes = other.localPlanes;
@@ -73,7 +78,9 @@ void Derived<S>::copyFrom(const Derived& other) {
   planeRoom = other.planeRoom;
   staticTree.copyFrom(other.staticTree);
   dynamicTree.copyFrom(other.dynamicTree);
+  makeRoom(touched, poses.size());
   usePlanes();
+  cached = true;
 }
 
 template <Scalar S>
@@ -97,6 +104,8 @@ std::uint64_t Derived<S>::bytes() const {
 
 template <Scalar S>
 void Derived<S>::growBodies(std::uint32_t slots) {
+  // Each body is touched once.
+  makeRoom(touched, slots);
   poses.resize(slots);
   firstShape.resize(slots, kNone);
   lastShape.resize(slots, kNone);
@@ -112,6 +121,26 @@ void Derived<S>::growShapes(std::uint32_t slots) {
   planeOffset.resize(slots, 0);
   planeRoom.resize(slots, 0);
   geometry.resize(slots, kNone);
+}
+
+template <Scalar S>
+void Derived<S>::reserveSurface() {
+  if (surfaces.tooMany(traits.size())) countSurfaces();
+  surfaces.reserve(surfaces.size() + 1);
+}
+
+template <Scalar S>
+void Derived<S>::reserveFor(const Shape<S>& shape) {
+  const std::uint32_t count = static_cast<std::uint32_t>(planeCount(shape));
+  reserveSurface();
+  // What placed shapes point to may go elsewhere, once nothing can fail that was to make it do so.
+  const auto reserve = [this](const auto& list, auto&& grow) {
+    const Plane<S>* const before = list.data();
+    grow();
+    if (list.data() != before) usePlanes();
+  };
+  reserve(localPlanes, [&] { localPlanes.reserve(count); });
+  reserve(planes, [&] { makeRoom(planes, planes.size() + count); });
 }
 
 template <Scalar S>
@@ -174,9 +203,13 @@ template <Scalar S>
 void Derived<S>::takeTraits(std::uint32_t index, const Shape<S>& shape) {
   traits[index] = ShapeTraits<S>::of(shape, surfaces.number(Surface<S>::of(shape)));
   around[index] = CircleAround<S>::of(shape);
-  if (!surfaces.tooMany(traits.size())) return;
-  // What shapes no longer have is forgotten.
+}
+
+/// Forgets the surfaces that shapes no longer have.
+template <Scalar S>
+void Derived<S>::countSurfaces() {
   Surfaces<S> anew;
+  anew.reserve(traits.size());
   for (ShapeTraits<S>& each : traits) each.surface = anew.number(surfaces[each.surface]);
   surfaces = std::move(anew);
 }
@@ -200,8 +233,8 @@ void Derived<S>::dropBox(std::uint32_t shape) {
 }
 
 template <Scalar S>
-void Derived<S>::ensure(const WorldState<S>& world) {
-  if (cached) return;
+void Derived<S>::compute(const WorldState<S>& world) {
+  makeRoom(touched, world.bodies.slots());
   poses.assign(world.bodies.slots(), {});
   firstShape.assign(world.bodies.slots(), kNone);
   lastShape.assign(world.bodies.slots(), kNone);
@@ -221,6 +254,9 @@ void Derived<S>::ensure(const WorldState<S>& world) {
   staticTree.clear();
   dynamicTree.clear();
   world.shapes.each([&](ShapeId id, const Shape<S>& shape) {
+    if (budget != nullptr && (id.index + 1) % Budget::kObjectsAtOnce == 0) {
+      budget->pay(Budget::kPerObject * Budget::kObjectsAtOnce);
+    }
     linkShape(shape.body().index, id.index);
     prepareShape(id.index, shape);
   });
@@ -254,10 +290,17 @@ void Derived<S>::putBoxesOf(const WorldState<S>& world, std::uint32_t bodyIndex)
 template <Scalar S>
 void Derived<S>::refresh(const WorldState<S>& world) {
   ensure(world);
-  if (keepPlaced) return;
+  if (keepPlaced || touched.empty()) return;
+  // Trees that are left midway are of no use.
+  cached = false;
+  std::uint32_t placedBodies = 0;
   for (const std::uint32_t body : touched) {
+    if (++placedBodies % Budget::kObjectsAtOnce == 0 && budget != nullptr) {
+      budget->pay(Budget::kPerObject * Budget::kObjectsAtOnce);
+    }
     if (world.bodies.aliveAt(body)) placeShapesOf(world, body);
   }
+  cached = true;
 }
 
 template <Scalar S>

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include <samestep/bb_tree.h>
+#include <samestep/make_room.h>
 #include <samestep/saved_world.h>
 #include <samestep/state.h>
 
+#include "base/budget.h"
 #include "contacts/push_contacts.h"
 
 namespace samestep {
@@ -42,8 +44,10 @@ class Surfaces {
   const Surface<S>& operator[](std::uint32_t number) const { return surfaces_[number]; }
   /// Whether there are so many more than shapes that they should be counted anew.
   bool tooMany(std::size_t shapes) const { return surfaces_.size() > 2 * shapes + 64; }
+  void reserve(std::size_t surfaces) { makeRoom(surfaces_, surfaces); }
   /// Of memory that a copy takes.
   std::uint64_t bytes() const { return surfaces_.size() * sizeof(Surface<S>); }
+  std::size_t size() const { return surfaces_.size(); }
 
  private:
   static_assert(std::is_trivially_copyable_v<Surface<S>> && sizeof(Surface<S>) == 4 * sizeof(S));
@@ -109,6 +113,8 @@ class LocalPlanes {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   void clear();
+  /// Makes room for the planes of one shape more.
+  void reserve(std::uint32_t count);
   /// Where planes stand that are equal to these, bit by bit, for one more user.
   std::uint32_t use(const Plane<S>* planes, std::uint32_t count);
   /// One user less, of what use() answered, or kNone.
@@ -169,8 +175,6 @@ struct Derived {
   std::vector<Plane<S>> planes;
   LocalPlanes<S> localPlanes;
   std::vector<std::uint32_t> geometry;  // Of each shape, in localPlanes.
-  // Whether a step left midway: it may have moved bodies without placing them.
-  bool leftMidway = false;
   // Bodies that may have been moved by hand since the last step, each once.
   std::vector<std::uint32_t> touched;
   std::vector<std::uint8_t> isTouched;
@@ -180,6 +184,9 @@ struct Derived {
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
+  /// Of the Space, who is asked while much is computed; null of a saved world.
+  Budget* budget = nullptr;
+
   // Of one step, and so in no copy.
 
   /// Within a step queries see the shapes where it placed them, whatever callbacks have moved: a question
@@ -188,7 +195,9 @@ struct Derived {
   BodyPairs bodyPairs;
 
   /// Computes all that was forgotten.
-  void ensure(const WorldState<S>& world);
+  void ensure(const WorldState<S>& world) {
+    if (!cached) compute(world);
+  }
   /// Forgets everything. Changes no result.
   void forget() {
     cached = false;
@@ -205,8 +214,14 @@ struct Derived {
   void putBoxesOf(const WorldState<S>& world, std::uint32_t body);
   void dropBox(std::uint32_t shape);
 
+  // Room is made before anything changes, by what may fail: linking, preparing and touching then cannot.
+
   void growBodies(std::uint32_t slots);
   void growShapes(std::uint32_t slots);
+  /// Makes room for what prepareShape keeps of a shape.
+  void reserveFor(const Shape<S>& shape);
+  /// The same for takeTraits.
+  void reserveSurface();
   void linkShape(std::uint32_t body, std::uint32_t shape);
   void unlinkShape(std::uint32_t body, std::uint32_t shape);
   void prepareShape(std::uint32_t index, const Shape<S>& shape);
@@ -242,6 +257,8 @@ struct Derived {
  private:
   /// Points each placed shape to its planes.
   void usePlanes();
+  void countSurfaces();
+  void compute(const WorldState<S>& world);
   void putBox(std::uint32_t shape, bool isStatic, const BB<S>& box, const Vector<S>& velocity);
   void findBodyPairs(const WorldState<S>& world);
 };

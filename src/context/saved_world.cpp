@@ -22,12 +22,25 @@ SavedSpace<S>::SavedSpace(SavedSpace&& other) noexcept
 
 template <Scalar S>
 SavedSpace<S>& SavedSpace<S>::operator=(const SavedSpace& other) {
-  if (this == &other) return *this;
-  state_ = other.state_;
+  if (this != &other) take(other.state_, other.derived_);
+  return *this;
+}
+
+template <Scalar S>
+void SavedSpace<S>::take(const WorldState<S>& state, const Derived<S>* derived) {
+  // A part of a world is none.
+  struct AllOrNothing {
+    WorldState<S>& state;
+    bool all = false;
+    ~AllOrNothing() {
+      if (!all) state = {};
+    }
+  } guard{state_};
   if (derived_ == nullptr) derived_ = new Derived<S>;
   derived_->cached = false;
-  if (other.derived_ != nullptr) derived_->copyFrom(*other.derived_);
-  return *this;
+  state_ = state;
+  if (derived != nullptr) derived_->copyFrom(*derived);
+  guard.all = true;
 }
 
 template <Scalar S>

@@ -21,8 +21,9 @@ struct StepContext {
   Wiring<S>& wiring;
   Crew& team;
   StepEvents<S>& events;
-  S dt{};        ///< Seconds of this step.
-  S dtBefore{};  ///< Of the one before; 0 in the first.
+  bool& leftMidway;  ///< See Change.
+  S dt{};            ///< Seconds of this step.
+  S dtBefore{};      ///< Of the one before; 0 in the first.
   /// Set by a stage that finds more pairs than the Space may hold: the step ends there, as if it had not
   /// begun.
   bool refused = false;
@@ -34,6 +35,9 @@ struct StepContext {
   static constexpr std::uint32_t kPairGrain = 32;
   static constexpr std::uint32_t kBodyGrain = 64;
 
+  /// Notes work done, and ends the call where that is wanted. On the thread that made it.
+  /// @throws Interrupted
+  void pay(std::uint64_t units) { wiring.budget.pay(units); }
   bool isSoft() const { return state.settings.solver == SolverKind::softStep; }
   /// How far apart two boxes may be for their shapes to be a pair, m.
   S pairMargin() const { return isSoft() ? state.settings.contactMargin : S(0); }

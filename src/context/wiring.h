@@ -9,9 +9,12 @@
 #include <samestep/events.h>
 #include <samestep/kernel.h>
 #include <samestep/limits.h>
+#include <samestep/make_room.h>
 #include <samestep/remark.h>
 #include <samestep/state.h>
 #include <samestep/workers.h>
+
+#include "base/budget.h"
 
 namespace samestep {
 
@@ -34,6 +37,8 @@ class BoundHandlers {
       for (auto kind = static_cast<std::size_t>(binding.kind); kind < kKinds; ++kind) ++ends_[kind];
     }
   }
+  /// So that take() takes no memory for as many.
+  void reserve(std::size_t bindings) { makeRoom(entries_, bindings); }
   /// The handler bound to these types, or null.
   auto find(const std::vector<RegisteredHandler>& registered, HandlerBinding::Kind kind, CollisionType typeA,
             CollisionType typeB) const -> decltype(&registered[0].handler) {
@@ -87,6 +92,7 @@ struct Wiring {
   TaskRunner* runner = nullptr;
   KernelTarget kernel = nextBestKernel(KernelTarget::best);
   std::uint32_t maxPairs = kDefaultMaxPairs;
+  Budget budget;
   Remarks remarks;
   /// Counts the worlds that came from elsewhere, for who must notice one.
   std::uint64_t worldsBroughtIn = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/change.h"
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
 #include "dynamics/body_access.h"
@@ -19,10 +20,11 @@ void Objects<S>::checkNew(const Context& world, const Body<S>& body) {
 }
 
 template <Scalar S>
-void Objects<S>::attach(Context& world, BodyId id) {
-  BodyAccess<S>::attach(world.state.bodies.valueAt(id.index), id, world.wiring.serial);
+void Objects<S>::insert(Context& world, const Body<S>& body, BodyId id) {
   world.derived.ensure(world.state);
-  world.derived.growBodies(world.state.bodies.slots());
+  world.derived.growBodies(max(world.state.bodies.slots(), id.index + 1));
+  world.state.bodies.store(id, body);
+  BodyAccess<S>::attach(world.state.bodies.valueAt(id.index), id, world.wiring.serial);
 }
 
 template <Scalar S>
@@ -35,15 +37,19 @@ template <Scalar S>
 void Objects<S>::eraseWithShapes(Context& world, BodyId id) {
   Derived<S>& derived = world.derived;
   derived.ensure(world.state);
+  Change change(world.leftMidway);
   ContactCallbacks<S>::dropPairs(world, id, {});
   derived.shapesHashKnown = false;
+  std::uint32_t dropped = 0;
   for (std::uint32_t i = derived.firstShape[id.index]; i != kNone;) {
+    if (++dropped % Budget::kObjectsAtOnce == 0) world.pay(Budget::kPerObject * Budget::kObjectsAtOnce);
     derived.dropBox(i);
     world.state.shapes.erase(world.state.shapes.idAt(i));
     i = std::exchange(derived.nextShape[i], kNone);
   }
   derived.firstShape[id.index] = derived.lastShape[id.index] = kNone;
   erase(world, id);
+  change.done();
 }
 
 template <Scalar S>
@@ -113,7 +119,9 @@ MassProperties<S> Objects<S>::massOfShapes(Context& world, BodyId id, std::uint3
     if (waiting != nullptr) visitShape(*waiting);
   };
   // One lonely shape keeps its numbers exactly.
+  std::uint64_t parts = 0;
   eachPart([&](const Part& part) {
+    ++parts;
     const Scaled<S> sum = mass + part.mass;
     const Scaled<S> dx = part.x - x;
     const Scaled<S> dy = part.y - y;
@@ -128,6 +136,7 @@ MassProperties<S> Objects<S>::massOfShapes(Context& world, BodyId id, std::uint3
     }
     mass = sum;
   });
+  world.wiring.budget.note(Budget::kPerObject / 2 * parts);
   return {saturated<S>(mass), moment, {toScalar<S>(x), toScalar<S>(y)}};
 }
 
@@ -164,34 +173,40 @@ void Objects<S>::insert(Context& world, const Shape<S>& shape, ShapeId id) {
   const Body<S>& holder = world.state.bodies.template at<Fault::BodyNotFound>(shape.body());
   require<Fault::DegenerateShape>(shape.wellFormed());
   checkShape(shape, holder);
-  world.derived.ensure(world.state);
+  Derived<S>& derived = world.derived;
+  derived.ensure(world.state);
+  derived.growShapes(max(world.state.shapes.slots(), id.index + 1));
+  derived.reserveFor(shape);
+  Shape<S> own = shape;
+  own.attach(id, world.wiring.serial);
+  world.state.shapes.reserve(id.index);
   const BodyId bodyId = shape.body();
   if (shape.mass() > S(0)) takeMass(world, bodyId, id.index, &shape);
 
-  world.derived.shapesHashKnown = false;
-  world.state.shapes.store(id, shape);
-  Shape<S>& kept = world.state.shapes.valueAt(id.index);
-  kept.attach(id, world.wiring.serial);
-  world.derived.growShapes(world.state.shapes.slots());
-  world.derived.linkShape(bodyId.index, id.index);
-  world.derived.prepareShape(id.index, kept);
+  derived.shapesHashKnown = false;
+  world.state.shapes.store(id, std::move(own));
+  derived.linkShape(bodyId.index, id.index);
+  derived.prepareShape(id.index, world.state.shapes.valueAt(id.index));
   // The next step or query places all shapes of the body.
-  world.derived.poses[bodyId.index].known = false;
-  world.derived.touch(bodyId.index);
+  derived.poses[bodyId.index].known = false;
+  derived.touch(bodyId.index);
 }
 
 template <Scalar S>
 void Objects<S>::erase(Context& world, ShapeId id) {
-  world.derived.ensure(world.state);
+  Derived<S>& derived = world.derived;
+  derived.ensure(world.state);
   const BodyId bodyId = world.state.shapes.valueAt(id.index).body();
+  Change change(world.leftMidway);
   ContactCallbacks<S>::dropPairs(world, bodyId, id);
 
   if (world.state.shapes.valueAt(id.index).mass() > S(0)) takeMass(world, bodyId, id.index, nullptr);
-  world.derived.dropBox(id.index);
-  world.derived.unlinkShape(bodyId.index, id.index);
-  world.derived.shapesHashKnown = false;
+  derived.dropBox(id.index);
+  derived.unlinkShape(bodyId.index, id.index);
+  derived.shapesHashKnown = false;
   world.state.shapes.erase(id);
-  world.derived.touch(bodyId.index);
+  derived.touch(bodyId.index);
+  change.done();
 }
 
 template <Scalar S>
@@ -210,28 +225,36 @@ void Objects<S>::replace(Context& world, ShapeId id, const Shape<S>& shape, bool
     require<Fault::SpaceLocked>(!locked);
     require<Fault::DegenerateShape>(next.wellFormed());
     checkShape(next, world.state.bodies.valueAt(kept.body().index));
-    world.derived.ensure(world.state);
+  }
+  world.derived.ensure(world.state);
+  std::span<const std::uint32_t> touching;
+  if (sameGeometry) {
+    world.derived.reserveSurface();
+  } else {
+    world.derived.reserveFor(next);
+    touching = world.derived.pairsOf(world.state, kept.body());
+  }
+  if (!sameGeometry || !sameMass) {
     if (!sameMass) takeMass(world, kept.body(), id.index, &next);
     world.derived.touch(kept.body().index);
   }
 
   world.derived.shapesHashKnown = false;
   world.derived.surfacesKnown = false;
-  kept = next;
-  world.derived.ensure(world.state);
+  kept = std::move(next);
   world.derived.takeTraits(id.index, kept);
   if (!sameGeometry) {
-    forgetManifolds(world, id);
+    forgetManifolds(world, id, touching);
     world.derived.prepareShape(id.index, kept);
     world.derived.poses[kept.body().index].known = false;
   }
 }
 
 /// The next step collides anew what touches a shape.
+/// @param touching  the pairs of its body
 template <Scalar S>
-void Objects<S>::forgetManifolds(Context& world, ShapeId id) {
-  for (const std::uint32_t index :
-       world.derived.pairsOf(world.state, world.state.shapes.valueAt(id.index).body())) {
+void Objects<S>::forgetManifolds(Context& world, ShapeId id, std::span<const std::uint32_t> touching) {
+  for (const std::uint32_t index : touching) {
     Pair<S>& pair = world.state.pairs[index];
     if (pair.a == id || pair.b == id) pair.manifold = Manifold::unknown;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "context/step_context.h"
 
@@ -15,8 +16,9 @@ struct Objects {
   static constexpr std::uint32_t kNone = Derived<S>::kNone;
 
   static void checkNew(const Context& world, const Body<S>& body);
-  /// Makes a body just stored the Space's own.
-  static void attach(Context& world, BodyId id);
+  /// Stores a body.
+  /// @pre the id can be given to it
+  static void insert(Context& world, const Body<S>& body, BodyId id);
   static void erase(Context& world, BodyId id);
   /// A body with all its shapes, in one go: each pair and shape is looked at once.
   static void eraseWithShapes(Context& world, BodyId id);
@@ -35,7 +37,7 @@ struct Objects {
                                         const Shape<S>* by);
   static bool anyShapeWeighs(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by);
   static void takeMass(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by);
-  static void forgetManifolds(Context& world, ShapeId id);
+  static void forgetManifolds(Context& world, ShapeId id, std::span<const std::uint32_t> touching);
 };
 
 #define SAMESTEP_EACH_SCALAR extern template struct Objects<S>;

@@ -5,6 +5,9 @@
 #include <atomic>
 #include <memory>
 
+#include <samestep/make_room.h>
+
+#include "base/change.h"
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
 #include "dynamics/body_access.h"
@@ -39,6 +42,7 @@ Space<S>::Space() : parts_(nullptr) {
   auto made = std::make_unique<SpaceParts<S>>();
   parts_ = made.get();
   parts_->wiring.serial = nextSerial();
+  parts_->derived.budget = &parts_->wiring.budget;
   state_.staticBody = add(Body<S>::fixedInPlace());
   made.release();
 }
@@ -50,12 +54,14 @@ Space<S>::~Space() {
 
 template <Scalar S>
 void Space<S>::requireUnlocked() const {
+  requireUsable();
   require<Fault::SpaceLocked>(locked_ == 0);
 }
 
 template <Scalar S>
 StepContext<S> Space<S>::contextOf(S dt) {
-  return {*this, state_, parts_->derived, parts_->wiring, parts_->team, parts_->events, dt, S(0), false};
+  return {*this, state_, parts_->derived, parts_->wiring, parts_->team, parts_->events, leftMidway_, dt,
+          S(0),  false};
 }
 
 // Settings.
@@ -90,6 +96,7 @@ Settings<S> with(Settings<S> settings, T Settings<S>::*field, std::type_identity
 
 template <Scalar S>
 void Space<S>::setSettings(const Settings<S>& settings) {
+  requireUsable();
   check(settings);
   const bool otherSolver = settings.solver != state_.settings.solver;
   const bool otherContacts = otherSolver || settings.contactMargin != state_.settings.contactMargin;
@@ -180,8 +187,9 @@ BodyId Space<S>::add(const Body<S>& body) {
   requireUnlocked();
   StepContext<S> world = contextOf();
   Objects<S>::checkNew(world, body);
-  const BodyId id = state_.bodies.insert(body);
-  Objects<S>::attach(world, id);
+  const BodyId id = state_.bodies.nextId();
+  require<Fault::IllegalSize>(id.index < BodyId::kNoIndex);
+  Objects<S>::insert(world, body, id);
   return id;
 }
 
@@ -190,8 +198,8 @@ BodyId Space<S>::add(const Body<S>& body, BodyId id) {
   requireUnlocked();
   StepContext<S> world = contextOf();
   Objects<S>::checkNew(world, body);
-  state_.bodies.insertAt(id, body);
-  Objects<S>::attach(world, id);
+  state_.bodies.checkGiven(id);
+  Objects<S>::insert(world, body, id);
   return id;
 }
 
@@ -231,6 +239,7 @@ void Space<S>::removeWithShapes(BodyId id) {
 
 template <Scalar S>
 Body<S>& Space<S>::body(BodyId id) {
+  requireUsable();
   Body<S>& found = state_.bodies.template at<Fault::BodyNotFound>(id);
   parts_->derived.touch(id.index);
   return found;
@@ -238,6 +247,7 @@ Body<S>& Space<S>::body(BodyId id) {
 
 template <Scalar S>
 const Body<S>& Space<S>::body(BodyId id) const {
+  requireUsable();
   return state_.bodies.template at<Fault::BodyNotFound>(id);
 }
 
@@ -281,23 +291,27 @@ void Space<S>::remove(ShapeId id) {
 
 template <Scalar S>
 const Shape<S>& Space<S>::shape(ShapeId id) const {
+  requireUsable();
   return state_.shapes.template at<Fault::ShapeNotFound>(id);
 }
 
 template <Scalar S>
 void Space<S>::replace(ShapeId id, const Shape<S>& shape) {
+  requireUsable();
   StepContext<S> world = contextOf();
   Objects<S>::replace(world, id, shape, isLocked());
 }
 
 template <Scalar S>
 void Space<S>::accumulateMassFromShapes(BodyId id) {
+  requireUsable();
   StepContext<S> world = contextOf();
   Objects<S>::accumulateMass(world, id);
 }
 
 template <Scalar S>
 std::uint32_t Space<S>::firstShape(BodyId id) const {
+  requireUsable();
   return parts_->derived.firstShapeOf(state_, id);
 }
 
@@ -308,6 +322,7 @@ std::uint32_t Space<S>::nextShape(std::uint32_t index) const {
 
 template <Scalar S>
 BB<S> Space<S>::boundingBox(ShapeId id) {
+  requireUsable();
   require<Fault::ShapeNotFound>(contains(id));
   parts_->derived.refresh(state_);
   return parts_->derived.placed[id.index].box;
@@ -315,12 +330,14 @@ BB<S> Space<S>::boundingBox(ShapeId id) {
 
 template <Scalar S>
 void Space<S>::reindexStatic() {
+  requireUsable();
   require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   parts_->derived.refresh(state_);
 }
 
 template <Scalar S>
 void Space<S>::reindexShape(ShapeId id) {
+  requireUsable();
   require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   require<Fault::ShapeNotFound>(contains(id));
   parts_->derived.refresh(state_);
@@ -328,6 +345,7 @@ void Space<S>::reindexShape(ShapeId id) {
 
 template <Scalar S>
 void Space<S>::reindexShapesForBody(BodyId id) {
+  requireUsable();
   require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
   require<Fault::BodyNotFound>(contains(id));
   parts_->derived.refresh(state_);
@@ -356,7 +374,7 @@ bool Space<S>::addPostStepCallback(PostStepFunc function, std::uint64_t key, voi
 
 template <Scalar S>
 void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>& handler) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0);
   require<Fault::ValueOutOfRange>(number != 0);
   Wiring<S>& wiring = parts_->wiring;
   Wiring<S>::set(wiring.handlers, typename Wiring<S>::RegisteredHandler{number, handler});
@@ -365,14 +383,14 @@ void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>&
 
 template <Scalar S>
 void Space<S>::registerPositionFunc(CallbackNumber number, PositionFunc function, void* data) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0);
   require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
   Wiring<S>::set(parts_->wiring.positionFuncs, {number, function, data});
 }
 
 template <Scalar S>
 void Space<S>::registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0);
   require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
   Wiring<S>::set(parts_->wiring.velocityFuncs, {number, function, data});
 }
@@ -384,6 +402,8 @@ template <Scalar S>
 void bind(StepContext<S> world, const HandlerBinding& binding) {
   require<Fault::MissingCallback>(world.wiring.has(binding.number));
   auto& all = world.state.handlers;
+  makeRoom(all, all.size() + 1);
+  world.wiring.bound.reserve(all.size() + 1);
   const auto place = std::lower_bound(all.begin(), all.end(), binding, HandlerBinding::before);
   if (place != all.end() && !HandlerBinding::before(binding, *place)) {
     *place = binding;
@@ -421,7 +441,7 @@ void Space<S>::setStageObserver(StageObserver observer, void* data) {
 
 template <Scalar S>
 void Space<S>::setMaxPairs(std::uint32_t pairs) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0);
   require<Fault::ValueOutOfRange>(pairs <= kMostPairs);
   parts_->wiring.maxPairs = pairs;
 }
@@ -431,15 +451,30 @@ std::uint32_t Space<S>::maxPairs() const {
   return parts_->wiring.maxPairs;
 }
 
+template <Scalar S>
+void Space<S>::setInterrupt(const Interrupt& interrupt) {
+  parts_->wiring.budget.interrupt = interrupt;
+}
+
+template <Scalar S>
+void Space<S>::setMaxWork(std::uint64_t work) {
+  parts_->wiring.budget.most = work;
+}
+
+template <Scalar S>
+std::uint64_t Space<S>::work() const {
+  return parts_->wiring.budget.spent();
+}
+
 // Who computes.
 
 template <Scalar S>
 void Space<S>::setWorkers(TaskRunner* runner, Sharing sharing) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0);
   // Checked numbers note their high-water marks in one table, and report by exception.
   constexpr bool kAlone = requires { requires S::kChecks; };
-  parts_->wiring.runner = runner;
   parts_->team.set(kAlone ? nullptr : runner, sharing);
+  parts_->wiring.runner = runner;
 }
 
 template <Scalar S>
@@ -449,7 +484,7 @@ TaskRunner* Space<S>::workers() const {
 
 template <Scalar S>
 void Space<S>::setKernel(KernelTarget target) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0);
   require<Fault::ValueOutOfRange>(target <= KernelTarget::simd128);
   if (!isAvailable(target)) {
     parts_->wiring.remarks.raise(
@@ -462,7 +497,7 @@ void Space<S>::setKernel(KernelTarget target) {
 
 template <Scalar S>
 void Space<S>::forceKernel(KernelTarget target) {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0);
   require<Fault::KernelUnavailable>(isAvailable(target));
   parts_->wiring.kernel = nextBestKernel(target);
   parts_->step.soft.setKernel(parts_->wiring.kernel);
@@ -478,9 +513,7 @@ KernelTarget Space<S>::kernel() const {
 template <Scalar S>
 void Space<S>::save(SavedSpace<S>& into) const {
   requireUnlocked();
-  into.state_ = state_;
-  if (into.derived_ == nullptr) into.derived_ = new Derived<S>;
-  into.derived_->copyFrom(parts_->derived);
+  into.take(state_, &parts_->derived);
 }
 
 template <Scalar S>
@@ -488,12 +521,6 @@ SavedSpace<S> Space<S>::save() const {
   SavedSpace<S> saved;
   save(saved);
   return saved;
-}
-
-template <Scalar S>
-void Space<S>::restore(const SavedSpace<S>& saved) {
-  adopt(saved.state_);
-  if (saved.derived_ != nullptr) parts_->derived.copyFrom(*saved.derived_);
 }
 
 namespace {
@@ -549,26 +576,45 @@ std::uint64_t Space<S>::worldsBroughtIn() const {
 }
 
 template <Scalar S>
-void Space<S>::adopt(const WorldState<S>& state) {
-  requireUnlocked();
+template <class Bring>
+void Space<S>::bringIn(const WorldState<S>& state, Bring&& bring) {
+  require<Fault::SpaceLocked>(locked_ == 0);
   checkAdoptable(parts_->wiring, state);
-  state_ = state;
+  Change change(leftMidway_);
   parts_->postStep.drop();
-  takeOver(contextOf());
+  bring();
+  change.done();
+  leftMidway_ = false;
+}
+
+template <Scalar S>
+void Space<S>::restore(const SavedSpace<S>& saved) {
+  bringIn(saved.state_, [&] {
+    state_ = saved.state_;
+    takeOver(contextOf());
+    if (saved.derived_ != nullptr) parts_->derived.copyFrom(*saved.derived_);
+  });
+}
+
+template <Scalar S>
+void Space<S>::adopt(const WorldState<S>& state) {
+  bringIn(state, [&] {
+    state_ = state;
+    takeOver(contextOf());
+  });
 }
 
 template <Scalar S>
 void Space<S>::adopt(WorldState<S>&& state) {
-  requireUnlocked();
-  checkAdoptable(parts_->wiring, state);
-  state_ = std::move(state);
-  parts_->postStep.drop();
-  takeOver(contextOf());
+  bringIn(state, [&] {
+    state_ = std::move(state);
+    takeOver(contextOf());
+  });
 }
 
 template <Scalar S>
 void Space<S>::dropCache() {
-  requireUnlocked();
+  require<Fault::SpaceLocked>(locked_ == 0);
   parts_->derived.forget();
 }
 
@@ -576,6 +622,7 @@ void Space<S>::dropCache() {
 
 template <Scalar S>
 void Space<S>::visitArbiters(const BodyId* of, void (*visit)(Arbiter<S>&, void*), void* data) {
+  requireUsable();
   StepContext<S> world = contextOf();
   const auto visitPair = [&](Pair<S>& pair) {
     if (!ContactCallbacks<S>::touching(pair)) return;
@@ -602,7 +649,9 @@ void Space<S>::filterArbiters(BodyId body, ShapeId shape) {
                                 (contains(shape) && state_.shapes.valueAt(shape.index).body() == body));
   LockGuard guard(*this);
   StepContext<S> world = contextOf();
+  Change change(leftMidway_);
   ContactCallbacks<S>::dropPairs(world, body, shape);
+  change.done();
   guard.finish();
 }
 
@@ -662,6 +711,7 @@ void Space<S>::step(S dt) {
   if (dt == S(0)) return;
   StepContext<S> context = contextOf(dt);
   Step<S>::check(context);
+  context.pay(0);
   LockGuard guard(*this);
   const std::size_t waiting = parts_->postStep.size();
   if (!parts_->step.run(context)) {
@@ -701,17 +751,20 @@ const Remarks& Space<S>::remarks() const {
 template <Scalar S>
 void Space<S>::pointQuery(const Vector<S>& point, S distance, const ShapeFilter& filter,
                           std::vector<PointHit<S>>& hits) {
+  requireUsable();
   Queries<S>{state_, *parts_}.point(point, distance, filter, hits);
 }
 
 template <Scalar S>
 void Space<S>::segmentQuery(const Vector<S>& start, const Vector<S>& end, S radius, const ShapeFilter& filter,
                             std::vector<SegmentHit<S>>& hits) {
+  requireUsable();
   Queries<S>{state_, *parts_}.segment(start, end, radius, filter, hits);
 }
 
 template <Scalar S>
 void Space<S>::boxQuery(const BB<S>& box, const ShapeFilter& filter, std::vector<ShapeId>& hits) {
+  requireUsable();
   Queries<S>{state_, *parts_}.box(box, filter, hits);
 }
 
@@ -719,6 +772,7 @@ void Space<S>::boxQuery(const BB<S>& box, const ShapeFilter& filter, std::vector
 
 template <Scalar S>
 std::uint64_t Space<S>::hash() const {
+  requireUsable();
   Derived<S>& derived = parts_->derived;
   if (!derived.shapesHashKnown) {
     derived.shapesHash = hashOfShapes(state_.shapes);

@@ -3,6 +3,7 @@
 
 #include <samestep/environment.h>
 
+#include "base/change.h"
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
 #include "dynamics/stages/integrate.h"
@@ -75,20 +76,18 @@ void Step<S>::check(const StepContext<S>& step) {
 
 template <Scalar S>
 bool Step<S>::run(StepContext<S>& step) {
+  Change change(step.leftMidway);
   step.dtBefore = step.state.timeStep;
   step.state.timeStep = step.dt;
   ++step.state.stamp;
   step.events.begin(step.state);
-  Derived<S>& derived = step.derived;
-  if (derived.leftMidway) derived.touchAll(step.state);
-  derived.leftMidway = true;
   // What position functions ask about is the world before any of them moved a body; the soft step begins with
   // it: nothing but what was moved by hand has to be placed.
-  if (step.isSoft() || !step.wiring.positionFuncs.empty()) derived.refresh(step.state);
-  const KeepPlaced keep(derived);
-  if (!runLines(step)) return false;
-  derived.leftMidway = false;
-  return true;
+  if (step.isSoft() || !step.wiring.positionFuncs.empty()) step.derived.refresh(step.state);
+  const KeepPlaced keep(step.derived);
+  const bool made = runLines(step);
+  change.done();
+  return made;
 }
 
 template <Scalar S>
@@ -96,6 +95,7 @@ bool Step<S>::runLines(StepContext<S>& step) {
   const bool movesFirst = !step.isSoft();
   if (movesFirst && FindPairs<S>::mayFindTooMany(step)) bodiesBefore_ = step.state.bodies;
   for (const Line& line : lines(step.state.settings.solver)) {
+    step.pay(Budget::kPerObject * (std::uint64_t{step.state.bodies.slots()} + step.state.shapes.slots()));
     line.run(*this, step);
     if (step.refused) {
       if (movesFirst) step.state.bodies = bodiesBefore_;
@@ -108,13 +108,12 @@ bool Step<S>::runLines(StepContext<S>& step) {
   return true;
 }
 
-/// Ends a step that found too many pairs, with all bodies where they were: it is as if it had not begun.
+/// Leaves the world as if a step that found too many pairs had not begun, with all bodies where they were.
 template <Scalar S>
 void Step<S>::takeBack(StepContext<S>& step) {
   step.state.timeStep = step.dtBefore;
   --step.state.stamp;
   step.derived.touchAll(step.state);
-  step.derived.leftMidway = false;
 }
 
 #define SAMESTEP_EACH_SCALAR template struct Step<S>;

@@ -2,6 +2,9 @@
 #include <samestep/recorder.h>
 #include <samestep/verify.h>
 
+#include <new>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "support/allocation_count.h"
@@ -283,6 +286,63 @@ TYPED_TEST(RecorderRollbackTest, AWarmMatchWithARingOfSavesTakesNoMemory) {
 
   EXPECT_EQ(allocationCount, before);
   EXPECT_GT(given, givenBefore);
+}
+
+/// What a tick of a match does, all of it recorded.
+template <Scalar S>
+void playTick(Recorder<S>& recorder, BodyId player, std::uint64_t tick, std::size_t& done) {
+  std::vector<Command<S>> commands;
+  if (tick % 2 == 0) commands.push_back(push<S>(player, 1));
+  if (tick == 1) commands.push_back(discToSpawn<S>());
+  if (tick == 2) commands.push_back(underGivenIds(discToSpawn<S>(), {12, 3}, {9, 1}));
+  if (tick == 4) commands.push_back(Remove{{12, 3}});
+  for (; done < commands.size(); ++done) recorder.apply(commands[done]);
+  recorder.step();
+}
+
+/// A match of which one call for memory fails; what failed is done again, from the last step where the world
+/// was left midway.
+template <Scalar S>
+Bytes matchWithFailure(std::int64_t failing, bool& failed) {
+  Space<S> space;
+  const BodyId player = fillSmall(space);
+  Bytes bytes;
+  SavedSpace<S> saved;
+  Recorder<S> recorder(space, kTick<S>, bytes, testWiring<S>());
+  failed = false;
+  allocationsUntilFailure = failing;
+  for (std::uint64_t tick = 0; tick < 6; ++tick) {
+    const std::int64_t left = std::exchange(allocationsUntilFailure, -1);
+    space.save(saved);
+    allocationsUntilFailure = left;
+    std::size_t done = 0;
+    while (recorder.ticks() == tick) {
+      try {
+        playTick(recorder, player, tick, done);
+      } catch (const std::bad_alloc&) {
+        EXPECT_FALSE(std::exchange(failed, true));
+        if (space.isUsable()) continue;
+        space.restore(saved);
+        done = 0;
+      }
+    }
+  }
+  failed = failed || allocationsUntilFailure < 0;
+  allocationsUntilFailure = -1;
+  recorder.finish();
+  return bytes;
+}
+
+TYPED_TEST(RecorderRollbackTest, WhereMemoryFailsTheRecordingIsThatOfTheMatchAsItWasPlayed) {
+  bool failed = false;
+  const Bytes whole = matchWithFailure<TypeParam>(-1, failed);
+  ASSERT_TRUE(verify<TypeParam>(whole, testWiring<TypeParam>()).matches);
+  std::int64_t failing = 0;
+  do {
+    ASSERT_EQ(matchWithFailure<TypeParam>(failing, failed), whole) << failing;
+    ++failing;
+  } while (failed);
+  EXPECT_GT(failing, 50);
 }
 
 }  // namespace

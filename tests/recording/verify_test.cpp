@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/verify.h>
+#include <samestep/workers.h>
 
 #include <algorithm>
 #include <string>
@@ -120,6 +121,74 @@ TYPED_TEST(VerifyTest, MoreBytesOrCommandsBeforeAStepThanAllowedAreRefused) {
   limits = {};
   limits.bytes = bytes.size() - 1;
   EXPECT_EQ(complaint(limits), "more bytes than allowed");
+}
+
+/// Discs in one place, and commands that remove some of them.
+template <Scalar S>
+Bytes recordHeap() {
+  Space<S> space;
+  for (int i = 0; i < 100; ++i) addDisc<S>(space, {}, S(1), S(1));
+  Bytes bytes;
+  Recorder<S> recorder(space, kTick<S>, bytes, {});
+  for (std::uint32_t tick = 0; tick < 3; ++tick) {
+    for (std::uint32_t i = 0; i < 10; ++i)
+      recorder.apply(Remove{space.state().bodies.idAt(1 + 10 * tick + i)});
+    recorder.step();
+  }
+  recorder.finish();
+  return bytes;
+}
+
+TYPED_TEST(VerifyTest, AnInterruptEndsItWhereverItIsAsked) {
+  using S = TypeParam;
+  const Bytes bytes = recordHeap<S>();
+  struct Asked {
+    int left;
+    int asked = 0;
+  };
+  const auto verifyUntil = [&](Asked& asked) {
+    VerifyOptions options;
+    options.interrupt = {[](void* data) {
+                           Asked& to = *static_cast<Asked*>(data);
+                           return ++to.asked == to.left;
+                         },
+                         &asked};
+    return verify<S>(bytes, {}, options);
+  };
+  Asked never{-1};
+  EXPECT_TRUE(verifyUntil(never).matches);
+  // Thirty commands, and in each of three steps eight stages and four substeps of two passes.
+  ASSERT_GT(never.asked, 30 + 3 * (8 + 8));
+  for (int place = 1; place <= never.asked; ++place) {
+    Asked asked{place};
+    const VerifyResult result = verifyUntil(asked);
+    EXPECT_TRUE(result.stopped) << place;
+    EXPECT_FALSE(result.matches) << place;
+    EXPECT_EQ(asked.asked, place);
+  }
+}
+
+TYPED_TEST(VerifyTest, MoreWorkThanAllowedIsRefusedInTheSamePlaceWhoeverComputes) {
+  using S = TypeParam;
+  const Bytes bytes = recordHeap<S>();
+  Replay<S> replay(bytes);
+  while (replay.step()) {
+  }
+  const std::uint64_t work = replay.space().work();
+  WorkerPool pool(3);
+  for (TaskRunner* workers : {static_cast<TaskRunner*>(nullptr), static_cast<TaskRunner*>(&pool)}) {
+    VerifyOptions options;
+    options.workers = workers;
+    options.limits.work = work;
+    EXPECT_TRUE(verify<S>(bytes, {}, options).matches);
+    options.limits.work = work - 1;
+    try {
+      verify<S>(bytes, {}, options);
+      ADD_FAILURE() << "not refused";
+    } catch (const FormatError& error) {
+      EXPECT_STREQ(error.what(), "more work than allowed");
+    }
+  }
 }
 
 // A few bytes a body, and every body is near all others: 50 million pairs.

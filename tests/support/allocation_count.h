@@ -14,21 +14,27 @@ namespace samestep {
 inline std::uint64_t allocationCount = 0;
 /// What they asked for, bytes.
 inline std::uint64_t allocatedBytes = 0;
+/// How many more calls take memory before one fails; none fails below 0.
+inline std::int64_t allocationsUntilFailure = -1;
+
+/// Counts a call that asks for so much; null where it is to fail.
+inline void* countedMemory(std::size_t size) noexcept {
+  ++allocationCount;
+  allocatedBytes += size;
+  if (allocationsUntilFailure >= 0 && allocationsUntilFailure-- == 0) return nullptr;
+  return std::malloc(size == 0 ? 1 : size);
+}
 
 }  // namespace samestep
 
 // Not inlined, or gcc takes malloc and operator delete for a mismatched couple.
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  ++samestep::allocationCount;
-  samestep::allocatedBytes += size;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  if (void* memory = samestep::countedMemory(size)) return memory;
   throw std::bad_alloc();
 }
 // Sorting takes its buffer through this form; without it, the sanitizer's own would answer to `delete` below.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++samestep::allocationCount;
-  samestep::allocatedBytes += size;
-  return std::malloc(size == 0 ? 1 : size);
+  return samestep::countedMemory(size);
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }

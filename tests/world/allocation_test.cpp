@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A step of a world that has warmed up takes no memory.
+// A step of a world that has warmed up takes no memory, and where there is none nothing comes out wrong.
 #include <samestep/space.h>
 #include <samestep/workers.h>
 
@@ -9,9 +9,11 @@
 #include <concepts>
 #include <cstdlib>
 #include <new>
+#include <string>
 
 #include <gtest/gtest.h>
 
+#include "support/midway.h"
 #include "support/scalars.h"
 #include "support/world.h"
 
@@ -86,9 +88,189 @@ double mostBytesPerPair(SolverKind solver, ContactPrecision precision) {
   return precision == ContactPrecision::fast ? 3300 : 2400;
 }
 
+/// Something that is done to a Space, and the world that it is done to.
+template <Scalar S>
+struct Operation {
+  const char* name;
+  void (*act)(Space<S>& space);
+  /// Whether nothing was computed of the world yet.
+  bool cold = false;
+};
+
+constexpr ShapeId kBox{3, 1};
+
+template <Scalar S>
+BodyId bodyAt(Space<S>& space, std::uint32_t shape) {
+  return bodyOf(space, space.state().shapes.idAt(shape));
+}
+
+/// Without its only shape the body weighs nothing: the step refuses one that is dynamic. The change of type
+/// takes no memory after the removal.
+template <Scalar S>
+void removeBox(Space<S>& space) {
+  const BodyId body = space.shape(kBox).body();
+  space.remove(kBox);
+  space.setType(body, BodyType::kinematicBody);
+}
+
+/// Of bodies and shapes.
+template <Scalar S>
+std::vector<Operation<S>> changes() {
+  return {
+      {"step", [](Space<S>& space) { space.step(kTick<S>); }},
+      {"first step", [](Space<S>& space) { space.step(kTick<S>); }, true},
+      {"add body", [](Space<S>& space) { space.add(Body<S>(S(1), S(1))); }},
+      {"add body under an id",
+       [](Space<S>& space) {
+         space.add(Body<S>(S(1), S(1)), {700, 1});
+       }},
+      {"add disc", [](Space<S>& space) { space.add(circleShape<S>(bodyAt(space, 4), S(1))); }, true},
+      {"add polygons",
+       [](Space<S>& space) {
+         Shape<S> box = boxShape<S>(bodyAt(space, 4), S(3), S(2));
+         box.setMass(S(2));
+         box.setFriction(ratio<S>(1, 3));
+         space.add(box);
+       }},
+      {"add shape under an id",
+       [](Space<S>& space) {
+         space.add(circleShape<S>(bodyAt(space, 4), S(1)), {900, 1});
+       }},
+      {"remove shape", removeBox<S>},
+      {"remove shape without what was computed", removeBox<S>, true},
+      {"remove body with shapes", [](Space<S>& space) { space.removeWithShapes(bodyAt(space, 3)); }},
+      {"replace geometry",
+       [](Space<S>& space) {
+         Shape<S> other = boxShape<S>({}, S(2), S(1));
+         other.setMass(S(5));
+         space.replace(kBox, other);
+       }},
+      {"replace surface",
+       [](Space<S>& space) {
+         space.change(kBox, [](Shape<S>& shape) { shape.setFriction(ratio<S>(1, 7)); });
+       }},
+      {"set type", [](Space<S>& space) { space.setType(bodyAt(space, 3), BodyType::kinematicBody); }, true},
+      {"settings", [](Space<S>& space) { space.setContactMargin(ratio<S>(1, 8)); }},
+      {"accumulate mass", [](Space<S>& space) { space.accumulateMassFromShapes(bodyAt(space, 3)); }, true},
+      {"filter arbiters", [](Space<S>& space) { space.filterArbiters(space.staticBody()); }},
+  };
+}
+
+template <Scalar S>
+std::vector<Operation<S>> otherCalls() {
+  return {
+      {"bind a handler", [](Space<S>& space) { space.addCollisionHandler(1, 2, 2); }},
+      {"register handlers",
+       [](Space<S>& space) {
+         for (CallbackNumber i = 5; i < 9; ++i) {
+           space.registerHandler(i, {});
+           space.registerPositionFunc(i, [](Body<S>&, S, void*) {});
+           space.registerVelocityFunc(i, [](Body<S>&, const Vector<S>&, S, S, void*) {});
+         }
+       }},
+      {"post-step callbacks",
+       [](Space<S>& space) {
+         struct Unlocked {
+           Space<S>& space;
+           ~Unlocked() { space.unlock(false); }
+         };
+         {
+           space.lock();
+           const Unlocked unlocked{space};
+           for (std::uint64_t key = 0; key < 40; ++key) {
+             space.addPostStepCallback([](Space<S>&, std::uint64_t, void*) {}, key);
+           }
+         }
+         space.lock();
+         space.unlock(true);
+       }},
+      {"step with workers",
+       [](Space<S>& space) {
+         static WorkerPool pool(2);
+         space.setWorkers(&pool, Sharing::always);
+         space.step(kTick<S>);
+         space.setWorkers(nullptr);
+       }},
+      {"queries",
+       [](Space<S>& space) {
+         std::vector<PointHit<S>> points;
+         std::vector<SegmentHit<S>> segments;
+         std::vector<ShapeId> boxes;
+         space.body(bodyAt(space, 3));
+         space.pointQuery({}, S(20), {}, points);
+         space.segmentQuery({S(-9), S(0)}, {S(9), S(0)}, S(1), {}, segments);
+         space.boxQuery({S(-9), S(-9), S(9), S(9)}, {}, boxes);
+         space.boundingBox(kBox);
+         space.reindexStatic();
+       },
+       true},
+      {"arbiters", [](Space<S>& space) { space.eachArbiter(space.staticBody(), [](Arbiter<S>&) {}); }},
+      {"save and hash",
+       [](Space<S>& space) {
+         const SavedSpace<S> saved = space.save();
+         const SavedSpace<S> copy = saved;
+         space.hash();
+       },
+       true},
+      {"adopt", [](Space<S>& space) { space.adopt(WorldState<S>(space.state())); }},
+  };
+}
+
 template <Scalar S>
 class AllocationTest : public ::testing::Test {
  protected:
+  static void wire(Space<S>& space) {
+    CollisionHandler<S> handler;
+    handler.begin = [](Arbiter<S>&, Space<S>&, void*) { return true; };
+    space.registerHandler(1, handler);
+    space.registerHandler(2, handler);
+  }
+  static void fill(Space<S>& space, SolverKind solver) {
+    wire(space);
+    space.addWildcardHandler(1, 1);
+    space.setSolver(solver);
+    fillAtRandom(space, 3);
+    hashesOf(space, 40);
+  }
+
+  /// Has each call for memory of an operation fail, one after the other. The world is then as it was or
+  /// refuses everything; the operation succeeds when it is made again; and the match goes on as one in which
+  /// nothing failed.
+  /// @return how many failed
+  static long failEachAllocation(const Operation<S>& operation, SolverKind solver) {
+    Space<S> space;
+    fill(space, solver);
+    const SavedSpace<S> before = space.save();
+    const std::uint64_t hashBefore = space.hash();
+    operation.act(space);
+    const std::uint64_t hashAfter = space.hash();
+    const std::vector<std::uint64_t> later = hashesOf(space, 3);
+    for (long failing = 0;; ++failing) {
+      SCOPED_TRACE(std::string(operation.name) + ", allocation " + std::to_string(failing));
+      // One that has no room for anything yet.
+      Space<S> tried;
+      wire(tried);
+      tried.restore(before);
+      if (operation.cold) tried.dropCache();
+      bool failed = false;
+      untilFailure = failing;
+      try {
+        operation.act(tried);
+      } catch (const std::bad_alloc&) {
+        failed = true;
+      }
+      const bool reached = untilFailure < 0;
+      untilFailure = -1;
+      if (failed) {
+        expectAsItWasOrUnusable(tried, before, hashBefore);
+        operation.act(tried);
+      }
+      EXPECT_EQ(tried.hash(), hashAfter);
+      EXPECT_EQ(hashesOf(tried, 3), later);
+      if (!reached || ::testing::Test::HasFailure()) return failing;
+    }
+  }
+
   template <class Call>
   static long countIn(Call&& call) {
     const long before = allocations;
@@ -184,6 +366,79 @@ TYPED_TEST(AllocationTest, ASpaceThatCannotBeMadeGivesAllMemoryBack) {
 
     EXPECT_TRUE(failed);
     EXPECT_EQ(live, before) << "allocation " << failing;
+  }
+}
+
+TYPED_TEST(AllocationTest, WhereMemoryFailsTheWorldIsAsItWasOrUnusable) {
+  using S = TypeParam;
+  for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {
+    long failed = 0;
+    for (const Operation<S>& operation : changes<S>()) failed += this->failEachAllocation(operation, solver);
+    for (const Operation<S>& operation : otherCalls<S>()) {
+      failed += this->failEachAllocation(operation, solver);
+    }
+    EXPECT_GT(failed, 150);
+  }
+}
+
+TYPED_TEST(AllocationTest, WhereMemoryFailsAWorldIsRestoredWholeOrNotAtAll) {
+  using S = TypeParam;
+  Space<S> space;
+  this->fill(space, SolverKind::softStep);
+  const SavedSpace<S> saved = space.save();
+  const std::uint64_t hash = space.hash();
+  for (const bool withCache : {true, false}) {
+    int unusable = 0;
+    for (long failing = 0;; ++failing) {
+      Space<S> other;
+      this->wire(other);
+      addDisc<S>(other, {}, S(1), S(1));
+      const SavedSpace<S> before = other.save();
+      const std::uint64_t hashBefore = other.hash();
+      bool failed = false;
+      untilFailure = failing;
+      try {
+        if (withCache) {
+          other.restore(saved);
+        } else {
+          other.adopt(saved.state());
+        }
+      } catch (const std::bad_alloc&) {
+        failed = true;
+      }
+      untilFailure = -1;
+      if (failed) {
+        unusable += other.isUsable() ? 0 : 1;
+        expectAsItWasOrUnusable(other, before, hashBefore);
+        other.restore(saved);
+      }
+      ASSERT_EQ(other.hash(), hash);
+      if (!failed) break;
+    }
+    EXPECT_GT(unusable, 5);
+  }
+}
+
+TYPED_TEST(AllocationTest, ASaveThatFailsHoldsNothing) {
+  using S = TypeParam;
+  Space<S> space;
+  this->fill(space, SolverKind::softStep);
+  for (long failing = 0;; ++failing) {
+    SavedSpace<S> saved;
+    bool failed = false;
+    untilFailure = failing;
+    try {
+      space.save(saved);
+    } catch (const std::bad_alloc&) {
+      failed = true;
+    }
+    untilFailure = -1;
+    if (!failed) break;
+    EXPECT_EQ(saved.state().bodies.slots(), 0u);
+    EXPECT_THROW(space.restore(saved), ForeignWorld);
+    EXPECT_TRUE(space.isUsable());
+    space.save(saved);
+    space.restore(saved);
   }
 }
 

@@ -33,6 +33,9 @@ struct RecordingLimits : WorldLimits {
   std::uint64_t bytes = std::uint64_t{1} << 30;
   /// Between two steps.
   std::uint32_t commandsPerTick = 1u << 16;
+  /// As Space::work counts it, for all of a replay: unlike a limit of seconds, no recording meets it on one
+  /// machine and not on another.
+  std::uint64_t work = ~std::uint64_t{0};
 };
 
 /// What stands in a recording after the first world.
@@ -48,8 +51,10 @@ class RecordingReader {
  public:
   /// Checks all of it first: limits, structure, numbers, checksum, that it has a step, that no command comes
   /// after the last one, whose hash would cover it, and that nothing follows.
-  /// @throws FormatError
-  explicit RecordingReader(std::span<const std::uint8_t> bytes, const RecordingLimits& limits = {});
+  /// @param interrupt  asked every few items
+  /// @throws FormatError, Interrupted
+  explicit RecordingReader(std::span<const std::uint8_t> bytes, const RecordingLimits& limits = {},
+                           const Interrupt& interrupt = {});
   /// The command at `offset`, as offset() gave it for these bytes, which moves to the next item.
   /// @throws FormatError
   static Command<S> commandAt(std::span<const std::uint8_t> bytes, std::uint64_t& offset);
@@ -72,7 +77,7 @@ class RecordingReader {
   std::uint64_t hash() const { return hash_; }
 
  private:
-  void countItems(std::uint32_t mostCommands);
+  void countItems(std::uint32_t mostCommands, const Interrupt& interrupt);
   void readEnd(class ByteReader& reader) const;
 
   std::span<const std::uint8_t> bytes_;

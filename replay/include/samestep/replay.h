@@ -13,9 +13,12 @@ template <Scalar S>
 class Replay {
  public:
   /// Checks the whole recording first. The bytes must outlive it.
-  /// @throws FormatError; MissingCallback for a world that needs functions the wiring does not register
+  /// @param interrupt  asked while the recording is checked, before each command and within commands and
+  ///                   steps, see Space::setInterrupt; after it has ended one the replay is over
+  /// @throws FormatError; MissingCallback for a world that needs functions the wiring does not register;
+  ///         Interrupted
   explicit Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring = {},
-                  const RecordingLimits& limits = {});
+                  const RecordingLimits& limits = {}, const Interrupt& interrupt = {});
 
   /// Steps in the recording, and steps made so far.
   std::uint64_t ticks() const { return reader_.ticks(); }
@@ -27,7 +30,7 @@ class Replay {
   std::uint64_t recordedHash() const { return recordedHash_; }
 
   /// Applies what was done before the next step, once; eachCommand() then tells it. False at the end.
-  /// @throws FormatError for what the world refuses, and where it outgrows the limits
+  /// @throws FormatError for what the world refuses, and where it outgrows the limits; Interrupted
   bool applyCommands();
   /// applyCommands, unless that has been done, and the step. False at the end.
   /// @throws as applyCommands
@@ -57,7 +60,11 @@ class Replay {
   }
 
  private:
+  template <class Action>
+  void act(Action&& action);
+
   std::span<const std::uint8_t> bytes_;
+  Interrupt interrupt_;
   RecordingReader<S> reader_;
   Wiring<S> wiring_;
   RecordingLimits limits_;

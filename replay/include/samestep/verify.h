@@ -12,7 +12,7 @@ namespace samestep {
 /// What replaying a recording showed.
 struct VerifyResult {
   bool matches = false;
-  /// Whether options.progress put an end to it; firstWrongTick then means nothing.
+  /// Whether options.progress or options.interrupt put an end to it; firstWrongTick then means nothing.
   bool stopped = false;
   /// Steps in the recording.
   std::uint64_t ticks = 0;
@@ -56,6 +56,9 @@ struct VerifyOptions {
   /// Called after every step; false stops, as for a recording that takes too long. Null for none.
   bool (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
   void* data = nullptr;
+  /// Asked far more often, so that a recording that takes too long ends within a tenth of a second: see
+  /// Replay.
+  Interrupt interrupt{};
   /// Who helps, with all that can be shared out, and the kernel, which is forced: no result depends on
   /// either.
   TaskRunner* workers = nullptr;

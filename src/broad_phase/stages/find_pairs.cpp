@@ -36,12 +36,12 @@ bool FindPairs<S>::findCandidates(StepContext<S>& step) {
     derived.staticTree.setMargin(margin);
   }
   const std::uint64_t most = kCandidatesPerPair * step.wiring.maxPairs;
-  if (tree.updatePairs(most)) return true;
+  if (tree.updatePairs(most, &step.wiring.budget)) return true;
   // How much room boxes have to move follows from the past; whether a step is refused must not.
   for (std::uint32_t i = 0; i < step.state.shapes.slots(); ++i) {
     if (tree.contains(i)) tree.update(i, derived.placed[i].box);
   }
-  return tree.updatePairs(most);
+  return tree.updatePairs(most, &step.wiring.budget);
 }
 
 /// Says where each pair goes, which ones are new, and whose boxes overlap.
@@ -117,6 +117,7 @@ void FindPairs<S>::run(StepContext<S>& step) {
   const std::uint32_t before = static_cast<std::uint32_t>(step.state.pairs.size());
   step.refused = !findCandidates(step);
   if (step.refused) return;
+  step.pay(Budget::kPerCandidate * (step.derived.dynamicTree.pairs().size() + before));
   const std::uint32_t count = mergePairs(step);
   step.refused = count > step.wiring.maxPairs;
   if (step.refused) return;

@@ -26,6 +26,12 @@ const CollisionHandler<S>* ContactCallbacks<S>::boundHandler(const Context& cont
   return context.wiring.bound.find(context.wiring.handlers, kind, typeA, typeB);
 }
 
+/// Before one more call of a handler in a row of them.
+template <Scalar S>
+void ContactCallbacks<S>::payForCall(Context& context, std::uint32_t& called) {
+  if (++called % Budget::kObjectsAtOnce == 0) context.pay(Budget::kPerCall * Budget::kObjectsAtOnce);
+}
+
 /// Finds who answers for an arbiter and turns it round where the handler's types say so. Null: the wildcards.
 template <Scalar S>
 const CollisionHandler<S>* ContactCallbacks<S>::handlerFor(const Context& context, Arbiter<S>& arbiter) {
@@ -134,8 +140,10 @@ void ContactCallbacks<S>::separate(Context& context, Pair<S>& pair, bool removal
 template <Scalar S>
 void ContactCallbacks<S>::postSolve(Context& context) {
   if (context.state.handlers.empty()) return;
+  std::uint32_t called = 0;
   for (Pair<S>& pair : context.state.pairs) {
     if (pair.solved == 0 || !touching(pair)) continue;
+    payForCall(context, called);
     Arbiter<S> arbiter = arbiterOf(context, pair);
     const CollisionHandler<S>* handler = handlerFor(context, arbiter);
     if (handler != nullptr && handler->postSolve != nullptr) {
@@ -154,9 +162,12 @@ void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape
     return !shape.valid() || pair.a == shape || pair.b == shape;
   };
   const std::span<const std::uint32_t> ofBody = context.derived.pairsOf(context.state, body);
+  context.pay(Budget::kPerCandidate * (context.state.pairs.size() + ofBody.size()));
+  std::uint32_t called = 0;
   for (const std::uint32_t index : ofBody) {
     Pair<S>& pair = pairs[index];
     if (!meant(pair) || pair.state == ArbiterState::apart || pair.state == ArbiterState::cached) continue;
+    payForCall(context, called);
     pair.state = ArbiterState::cached;
     separate(context, pair, true);
   }

@@ -51,6 +51,7 @@ struct ContactCallbacks {
     bool turned_;
   };
 
+  static void payForCall(Context& context, std::uint32_t& called);
   static const CollisionHandler<S>* boundHandler(const Context& context, HandlerBinding::Kind kind,
                                                  CollisionType typeA, CollisionType typeB);
   static const CollisionHandler<S>* handlerFor(const Context& context, Arbiter<S>& arbiter);

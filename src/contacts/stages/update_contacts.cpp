@@ -34,11 +34,17 @@ void UpdateContacts<S>::collidePairs(StepContext<S>& step, const std::uint8_t* o
   someCompound_ = step.derived.hasCompound();
   const bool handled = !step.state.handlers.empty();
   if (!step.team.helpsWith(count, StepContext<S>::kFewPairs)) {
-    someLeft_ = collideRange(step, overlapping, 0, count, surfacesKnown, step.events.collisionStats);
+    const std::uint32_t grain = Budget::kPairsAtOnce;
+    for (std::uint32_t begin = 0; begin < count; begin += min(grain, count - begin)) {
+      const std::uint32_t end = begin + min(grain, count - begin);
+      someLeft_ |= collideRange(step, overlapping, begin, end, surfacesKnown, step.events.collisionStats);
+      step.pay(Budget::kPerPair * (end - begin));
+    }
   } else {
     collideTogether(step, overlapping, surfacesKnown);
   }
   mendSeams_.run(step, found_);
+  step.pay(0);
   decidePairs(step, surfacesKnown && !handled, decidesLater(step));
   // What callbacks have set is for this step.
   step.derived.surfacesKnown = !handled;
@@ -54,14 +60,21 @@ void UpdateContacts<S>::collideTogether(StepContext<S>& step, const std::uint8_t
     if (number != 0) to.fetch_add(static_cast<std::uint32_t>(number), std::memory_order_relaxed);
   };
   step.team.during(true, [&] {
-    step.team.each(count, StepContext<S>::kPairGrain, [&](std::uint32_t begin, std::uint32_t end) {
-      CollisionStats stats;
-      someLeft.note(collideRange(step, overlapping, begin, end, surfacesKnown, stats));
-      add(gjk, stats.highGjkIterations);
-      add(gjkToEpa, stats.highGjkToEpaIterations);
-      add(epa, stats.highEpaIterations);
-    });
+    // Nobody waits for others where nobody asks.
+    const std::uint32_t most = step.wiring.budget.isWatched() ? kPairsTogether : count;
+    for (std::uint32_t from = 0; from < count; from += min(most, count - from)) {
+      const std::uint32_t part = min(most, count - from);
+      step.team.each(part, StepContext<S>::kPairGrain, [&](std::uint32_t begin, std::uint32_t end) {
+        CollisionStats stats;
+        someLeft.note(collideRange(step, overlapping, from + begin, from + end, surfacesKnown, stats));
+        add(gjk, stats.highGjkIterations);
+        add(gjkToEpa, stats.highGjkToEpaIterations);
+        add(epa, stats.highEpaIterations);
+      });
+      if (step.wiring.budget.spend(Budget::kPerPair * part)) break;
+    }
   });
+  step.wiring.budget.endWhereAsked();
   someLeft_ = static_cast<bool>(someLeft);
   step.events.collisionStats.highGjkIterations += gjk;
   step.events.collisionStats.highGjkToEpaIterations += gjkToEpa;
@@ -197,7 +210,10 @@ void UpdateContacts<S>::decidePairs(StepContext<S>& step, bool surfacesKnown, bo
     someLeft_ = true;
   };
   if (all) {
-    for (std::uint32_t i = 0; i < found_.size(); ++i) decideOne(i);
+    for (std::uint32_t i = 0; i < found_.size(); ++i) {
+      if ((i + 1) % Budget::kPairsAtOnce == 0) step.pay(Budget::kPerCall * Budget::kPairsAtOnce);
+      decideOne(i);
+    }
   } else {
     for (const std::uint32_t i : mendSeams_.asked()) decideOne(i);
   }

@@ -25,6 +25,9 @@ class UpdateContacts {
   static void settle(StepContext<S>& step);
 
  private:
+  // How many pairs are shared out between two questions whether the step shall go on.
+  static constexpr std::uint32_t kPairsTogether = 4 * Budget::kPairsAtOnce;
+
   /// Whether what is solved is decided with the collision, whether pairs have what surfaces say from the last
   /// step, and whether bodies of several shapes move.
   struct Deciding {

@@ -3,8 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <type_traits>
+
+#include "base/budget.h"
 
 namespace samestep {
 
@@ -17,14 +20,21 @@ class BlockMemory {
   BlockMemory& operator=(const BlockMemory&) = delete;
 
   /// Makes room for so many bytes, and where it grows for an eighth more than it had. What it held is lost.
-  void reserve(std::size_t bytes) {
+  /// @param budget  asked as it is cleared, which for a large step takes a while
+  /// @throws Interrupted
+  void reserve(std::size_t bytes, Budget& budget) {
     if (bytes <= capacity_) return;
     const std::size_t grown = capacity_ + capacity_ / 8;
     const std::size_t capacity = bytes > grown ? bytes : grown;
     // The old room goes first: at its worst this is most of what a step takes.
     capacity_ = 0;
     room_.reset();
-    room_ = std::make_unique<std::byte[]>(capacity + kAlignment);
+    room_ = std::make_unique_for_overwrite<std::byte[]>(capacity + kAlignment);
+    for (std::size_t begin = 0; begin < capacity + kAlignment; begin += kClearedAtOnce) {
+      const std::size_t left = capacity + kAlignment - begin;
+      std::memset(room_.get() + begin, 0, left < kClearedAtOnce ? left : kClearedAtOnce);
+      budget.pay(0);
+    }
     capacity_ = capacity;
   }
   /// The records of a plain type that begin at a multiple of kAlignment.
@@ -41,6 +51,8 @@ class BlockMemory {
   static constexpr std::size_t kAlignment = 64;
 
  private:
+  static constexpr std::size_t kClearedAtOnce = std::size_t{1} << 24;
+
   std::unique_ptr<std::byte[]> room_;
   std::size_t capacity_ = 0;
 };

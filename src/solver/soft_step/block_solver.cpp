@@ -107,7 +107,7 @@ void BlockSolver<S, N>::setKernel(KernelTarget target) {
 
 template <Scalar S, class N>
 bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
-                              const std::vector<BlockGroup>& groups, S mostKept) {
+                              const std::vector<BlockGroup>& groups, S mostKept, Budget& budget) {
   settings_ = &settings;
   starts_ = &starts;
   groups_ = &groups;
@@ -116,6 +116,8 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
   bodies_.assign(starts.size(), {});
   drives_.resize(starts.size());
   marks_.resize(starts.size());
+  // Here, though few steps push: within run() no memory is taken.
+  pushes_.resize(starts.size());
   if constexpr (kIntegers) moments_.resize(starts.size());
   std::int64_t misfit = 0;
   for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -143,7 +145,7 @@ bool BlockSolver<S, N>::begin(const SoftSettings<S>& settings, const std::vector
   }
   blockCount_ = groups.empty() ? 0 : groups.back().end;
   static_assert(sizeof(Block) % BlockMemory::kAlignment == 0);
-  memory_->reserve(blockCount_ * (sizeof(Block) + sizeof(Rest)));
+  memory_->reserve(blockCount_ * (sizeof(Block) + sizeof(Rest)), budget);
   blocks_ = memory_->template at<Block>(0);
   rests_ = memory_->template at<Rest>(blockCount_ * sizeof(Block));
   return misfit == 0;
@@ -391,11 +393,14 @@ void BlockSolver<S, N>::takePushes(std::uint32_t begin, std::uint32_t end) {
 }
 
 template <Scalar S, class N>
-bool BlockSolver<S, N>::run(bool strikes, bool pushes, Crew& crew) {
+bool BlockSolver<S, N>::run(bool strikes, bool pushes, Crew& crew, Budget& budget) {
   const auto count = static_cast<std::uint32_t>(bodies_.size());
+  const std::uint64_t perPass = Budget::kPerPairAndPass * N::kLanes * blockCount_;
   Finding left;
   const auto passOn = [&](ContactPass<N> kernel, std::vector<SoftBody<N>>& bodies) {
+    if (left) return;
     left.note(passOverGroups(kernel, blocks_, rests_, *groups_, bodies, constants_, crew));
+    left.note(budget.spend(perPass));
   };
   const auto pass = [&](ContactPass<N> kernel) { passOn(kernel, bodies_); };
   const auto eachBody = [&](auto&& part) { crew.each(count, kBodyGrain, part); };
@@ -407,7 +412,6 @@ bool BlockSolver<S, N>::run(bool strikes, bool pushes, Crew& crew) {
   };
   eachBody([&](std::uint32_t begin, std::uint32_t end) { tellKept(begin, end); });
   if (pushes) {
-    pushes_.resize(count);
     eachBody([&](std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t i = begin; i < end; ++i) pushes_[i] = {};
     });

@@ -9,6 +9,7 @@
 #include <samestep/body.h>
 #include <samestep/kernel.h>
 
+#include "base/budget.h"
 #include "solver/kernels/contact_block.h"
 #include "solver/kernels/soft_units.h"
 #include "solver/soft_step/block_groups.h"
@@ -31,8 +32,9 @@ class BlockSolver {
   /// are then to be filled.
   /// @param mostKept  no kept impulse is larger, as a speed of the lighter body, m/s
   /// @return false where the numbers of the step do not fit
+  /// @throws Interrupted
   bool begin(const SoftSettings<S>& settings, const std::vector<SoftStart<S>>& starts,
-             const std::vector<BlockGroup>& groups, S mostKept);
+             const std::vector<BlockGroup>& groups, S mostKept, Budget& budget);
   /// The pairs of a block on their way into it.
   struct Taken {
     BlockInput<N> input;
@@ -57,11 +59,12 @@ class BlockSolver {
   /// @param strikes  whether any point does: nothing kept from the last step says yet how the blow goes on
   ///                 through a pile, so that springs are solved three times in each substep
   /// @param pushes   whether any pair is pushed apart: overlaps that no weight holds move bodies by
-  /// velocities
-  ///                 that are forgotten at the end of the step, for what springs leave of theirs in a
-  ///                 velocity stays there for ever
-  /// @return false where a number left the range on the way: nothing is then worth anything
-  bool run(bool strikes, bool pushes, Crew& crew);
+  ///                 velocities that are forgotten at the end of the step, for what springs leave of theirs
+  ///                 in a velocity stays there for ever
+  /// @param budget   asked after each pass over the blocks
+  /// @return false where a number left the range on the way, or the call shall end: nothing is then worth
+  ///         anything
+  bool run(bool strikes, bool pushes, Crew& crew, Budget& budget);
   /// After the last one: what bounces.
   void bounce();
   SoftMotion<S> motion(std::uint32_t body) const;

@@ -43,8 +43,10 @@ void ImpulseStages<S>::prepare(StepContext<S>& step) {
   solver_.bodies.clear();
   bodies_.clear();
   solverIndex_.assign(bodies.slots(), kNone);
+  std::uint32_t prepared = 0;
   for (const Pair<S>& pair : step.state.pairs) {
     if (pair.solved == 0) continue;
+    if (++prepared % Budget::kPairsAtOnce == 0) step.pay(Budget::kPerPair * Budget::kPairsAtOnce);
     const std::uint32_t a = shapes.valueAt(pair.a.index).body().index;
     const std::uint32_t b = shapes.valueAt(pair.b.index).body().index;
     const std::uint32_t solverA = solverIndexOf(a);
@@ -57,7 +59,10 @@ template <Scalar S>
 void ImpulseStages<S>::solve(StepContext<S>& step) {
   takeBodies(step);
   warmStart(step);
-  for (int i = 0; i < step.state.settings.iterations; ++i) solver_.iterate();
+  for (int i = 0; i < step.state.settings.iterations; ++i) {
+    solver_.iterate();
+    step.pay(Budget::kPerPairAndPass * solver_.rows.size());
+  }
   storeImpulses(step);
   storeVelocities(step);
 }

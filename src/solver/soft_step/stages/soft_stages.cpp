@@ -144,7 +144,7 @@ template <Scalar S>
 void SoftStages<S>::takePairs(StepContext<S>& step) {
   const auto take = [&](auto& solver) {
     layOutBlocks(std::remove_reference_t<decltype(solver)>::Numbers::kLanes);
-    return solver.begin(soft_.settings, soft_.starts, soft_.groups, soft_.mostKept) &&
+    return solver.begin(soft_.settings, soft_.starts, soft_.groups, soft_.mostKept, step.wiring.budget) &&
            fillBlocks(step, solver);
   };
   while (!soft_.solvers.with(take)) soft_.solvers.fallBack();
@@ -173,6 +173,17 @@ inline void SoftStages<S>::fetchAhead(const std::vector<Pair<S>>& pairs, std::ui
   for (std::uint32_t line = 0; line < sizeof(Pair<S>); line += 64) __builtin_prefetch(pair + line);
   __builtin_prefetch(&soft_.frames[next.a]);
   __builtin_prefetch(&soft_.frames[next.b]);
+}
+
+/// A group may hold nearly all pairs.
+template <class Step, class Fill>
+static void fillInOrder(Step& step, std::uint32_t blocks, Fill& fill) {
+  for (std::uint32_t begin = 0; begin < blocks;) {
+    const std::uint32_t end = min(begin + Budget::kPairsAtOnce, blocks);
+    fill(begin, end);
+    begin = end;
+    if (step.wiring.budget.spend(0)) return;
+  }
 }
 
 /// Puts the pairs into blocks, group by group.
@@ -214,13 +225,15 @@ bool SoftStages<S>::fillBlocks(StepContext<S>& step, Solver& solver) {
         }
       };
       if (blockGroup.inOrder) {
-        fill(0, blockGroup.end - start);
+        fillInOrder(step, blockGroup.end - start, fill);
       } else {
         step.team.each(blockGroup.end - start, kBlockGrain<typename Solver::Numbers>, fill);
       }
+      if (step.wiring.budget.spend(Budget::kPerPair * count)) return;
       first += count;
     }
   });
+  step.wiring.budget.endWhereAsked();
   soft_.bounces = static_cast<bool>(bounces);
   soft_.strikes = static_cast<bool>(strikes);
   soft_.pushes = static_cast<bool>(pushes);
@@ -233,11 +246,12 @@ void SoftStages<S>::solve(StepContext<S>& step) {
   const auto run = [&](auto& solver) {
     bool solved = false;
     team.during(team.helpsWith(solvedPairs_.size(), StepContext<S>::kFewPairs), [&] {
-      solved = solver.run(soft_.strikes, soft_.pushes, team);
+      solved = solver.run(soft_.strikes, soft_.pushes, team, step.wiring.budget);
       if (!solved) return;
       if (soft_.bounces) solver.bounce();
       solver.store(step.state.pairs, team);
     });
+    step.wiring.budget.endWhereAsked();
     return solved;
   };
   while (!soft_.solvers.with(run)) {
