@@ -89,7 +89,10 @@ class Builder {
   Node result() { return std::move(root_); }
 
  private:
-  static Node make(Kind kind, std::uint32_t line) {
+  Node make(Kind kind, std::uint32_t line) {
+    if (++values_ > kMaxValues) {
+      throw SceneError(file_, line, "", "more than " + std::to_string(kMaxValues) + " values");
+    }
     Node node;
     node.kind = kind;
     node.line = line;
@@ -120,6 +123,7 @@ class Builder {
 
   const std::string& file_;
   const Position& position_;
+  std::uint32_t values_ = 0;
   std::vector<Node> open_;
   Node root_;
 };

@@ -27,8 +27,12 @@ struct Node {
 /// Arrays and objects may be nested this deep.
 inline constexpr int kMaxDepth = 32;
 
+/// A text may hold so many values: each takes a hundred bytes, however few it has in its file.
+inline constexpr std::uint32_t kMaxValues = 1u << 21;
+
 /// @param file  what errors call the text
-/// @throws SceneError for what is not JSON, repeats a key or is nested deeper than kMaxDepth
+/// @throws SceneError for what is not JSON, repeats a key, is nested deeper than kMaxDepth or holds more than
+///         kMaxValues
 Node parse(std::string_view text, const std::string& file);
 
 }  // namespace samestep::json

@@ -282,7 +282,12 @@ BodyId SceneBuilder<S>::addBody(const Spawn<S>& body) {
 
 template <Scalar S>
 void SceneBuilder<S>::addNamed(const Cursor& at, const std::string& name, const Spawn<S>& body) {
-  if (scene_.space_.bodyCount() >= kMaxSceneBodies) at.fail("too many bodies");
+  if (scene_.space_.bodyCount() >= kMaxSceneBodies) {
+    at.fail(tooMany("bodies", kMaxSceneBodies));
+  }
+  if (scene_.space_.shapeCount() + body.shapes.size() > kMaxSceneShapes) {
+    at.fail(tooMany("shapes", kMaxSceneShapes));
+  }
   const BodyId id = at.guard([&] { return addBody(body); });
   if (!name.empty()) scene_.names_[newName(at, name)] = id;
 }

@@ -122,7 +122,8 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
       return;
     }
     const Row row(file, line, content);
-    if (space.bodyCount() >= kMaxSceneBodies) row.fail("", "too many bodies");
+    if (space.bodyCount() >= kMaxSceneBodies) row.fail("", tooMany("bodies", kMaxSceneBodies));
+    if (space.shapeCount() >= kMaxSceneShapes) row.fail("", tooMany("shapes", kMaxSceneShapes));
     row.guard([&] {
       const bool first = row.body() != last;
       if (first) body = space.add(bodyOf<S>(row));

@@ -25,10 +25,16 @@ struct SceneSource::Document {
   std::string read(const std::string& path) const;
 };
 
-/// A scene may have so many bodies and events, and each of its files so many bytes.
+/// A scene may have so many bodies, shapes and events, and each of its files so many bytes.
 inline constexpr std::uint32_t kMaxSceneBodies = 65536;
+inline constexpr std::uint32_t kMaxSceneShapes = 65536;
 inline constexpr std::uint32_t kMaxSceneEvents = 1u << 20;
 inline constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
+
+/// "too many shapes: at most 65536"
+inline std::string tooMany(const char* what, std::uint32_t most) {
+  return "too many " + std::string(what) + ": at most " + std::to_string(most);
+}
 
 /// Calls visit(line number, line) for each line that is neither empty nor begins with '#'.
 template <class Visit>

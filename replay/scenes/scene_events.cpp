@@ -76,7 +76,9 @@ std::vector<std::string_view> splitFields(std::string_view line) {
 template <Scalar S>
 void SceneBuilder<S>::addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name,
                                Command<S>&& command) {
-  if (scene_.events_.size() >= kMaxSceneEvents) at.fail("too many events");
+  if (scene_.events_.size() >= kMaxSceneEvents) {
+    at.fail(tooMany("events", kMaxSceneEvents));
+  }
   scene_.events_.emplace_back(tick, name, std::move(command));
 }
 

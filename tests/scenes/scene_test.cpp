@@ -315,6 +315,12 @@ TYPED_TEST(SceneTest, MalformedScenesAreRefusedWithTheirReason) {
               HasSubstr("there is a body named \"a\""));
   EXPECT_THAT(said("\"bodies\": [{\"grid\": {\"columns\": 10000, \"rows\": 10000}}]"),
               HasSubstr("too many bodies"));
+  // A few bytes that ask for millions.
+  std::string shapes;
+  for (int i = 0; i < 100; ++i) shapes += std::string(i == 0 ? "" : ",") + "{\"circle\": 1}";
+  const std::string grid =
+      "\"bodies\": [{\"shapes\": [" + shapes + "], \"grid\": {\"columns\": 250, \"rows\": 250}}]";
+  EXPECT_THAT(said(grid.c_str()), HasSubstr("/bodies/0/grid: too many shapes: at most 65536"));
   EXPECT_THAT(said("\"bodies\": [{\"grid\": {\"columns\": 9, \"across\": [1e6, 0]}}]"),
               HasSubstr("leads out of"));
   EXPECT_THAT(said("\"events\": [{\"tick\": 1, \"do\": \"remove\", \"body\": \"x\"}]"),
@@ -340,6 +346,15 @@ TYPED_TEST(SceneTest, DeepNestingIsRefusedBeforeItCanHarm) {
   const std::string deep(100000, '[');
 
   EXPECT_THAT(complaint<TypeParam>("{\"samestep\": " + deep), HasSubstr("nested deeper than 32"));
+}
+
+// Each of them takes fifty times as many bytes as in its file.
+TYPED_TEST(SceneTest, ATextOfMoreValuesThanAllowedIsRefused) {
+  std::string text = "{\"samestep\": 1,\n\"bodies\": [0";
+  for (int i = 0; i < 1 << 21; ++i) text += ",0";
+  text += "]}";
+
+  EXPECT_THAT(complaint<TypeParam>(text), HasSubstr(":2: more than 2097152 values"));
 }
 
 TYPED_TEST(SceneTest, FamiliesComeInTheSizeAskedFor) {
