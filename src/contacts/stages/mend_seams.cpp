@@ -2,6 +2,7 @@
 #include "contacts/stages/mend_seams.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/require_ieee.h"
 #include "contacts/push_contacts.h"
@@ -80,9 +81,12 @@ void MendSeams<S>::judge(const StepContext<S>& step, const std::vector<std::uint
     contacts_.add(seamContactOf(step.derived, step.state.pairs[side.pair], side.shape), side.pair);
   }
   contacts_.sort();
+  std::uint64_t looked = 0;
   for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
     const std::uint32_t pair = contacts_.numberOf(i);
     if ((found[pair] & ContactFound::kFresh) == 0) continue;
+    looked += contacts_.size();
+    if (looked >= Budget::kPairsAtOnce) step.wiring.budget.pay(Budget::kPerObject * std::exchange(looked, 0));
     Change change{pair, step.state.pairs[pair].a.index == sides.front().shape, SeamVerdict::stays, {}};
     change.verdict = judgeSeam<S>(contacts_, i, step.pairMargin(), change.info);
     if (change.verdict != SeamVerdict::stays) changes_.push_back(change);
