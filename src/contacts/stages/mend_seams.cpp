@@ -86,7 +86,7 @@ void MendSeams<S>::judge(const StepContext<S>& step, const std::vector<std::uint
     const std::uint32_t pair = contacts_.numberOf(i);
     if ((found[pair] & ContactFound::kFresh) == 0) continue;
     looked += contacts_.size();
-    if (looked >= Budget::kPairsAtOnce) step.wiring.budget.pay(Budget::kPerObject * std::exchange(looked, 0));
+    if (looked >= 16 * Budget::kPairsAtOnce) step.wiring.budget.pay(std::exchange(looked, 0));
     Change change{pair, step.state.pairs[pair].a.index == sides.front().shape, SeamVerdict::stays, {}};
     change.verdict = judgeSeam<S>(contacts_, i, step.pairMargin(), change.info);
     if (change.verdict != SeamVerdict::stays) changes_.push_back(change);
