@@ -82,8 +82,8 @@ struct Pair {
   // First what every step asks of every pair: it shares a cache line.
 
   /// Of the state only the slots: a shape that goes takes its pairs with it.
-  ShapeId a{};
-  ShapeId b{};
+  LocalId<ShapeTag> a{};
+  LocalId<ShapeTag> b{};
   /// How the body of the smaller shape stood to the other's when the shapes were collided.
   RelativePose pose{};
   /// Where the closest-feature search of the next step starts.
@@ -134,8 +134,8 @@ class Arbiter {
       : pair_(pair), bodies_{&bodyA, &bodyB}, shapes_{&shapeA, &shapeB} {}
 
   /// The shapes. MIS: arbiterGetShapes
-  ShapeId shapeA() const { return swapped_ ? pair_.b : pair_.a; }
-  ShapeId shapeB() const { return swapped_ ? pair_.a : pair_.b; }
+  ShapeId shapeA() const { return shapeDataA().id(); }
+  ShapeId shapeB() const { return shapeDataB().id(); }
   const Shape<S>& shapeDataA() const { return *shapes_[swapped_ ? 1 : 0]; }
   const Shape<S>& shapeDataB() const { return *shapes_[swapped_ ? 0 : 1]; }
   /// The bodies. MIS: arbiterGetBodies

@@ -24,12 +24,14 @@ class Array {
 
   /// @throws IndexOutOfBounds
   T& operator[](std::size_t index) {
-    require<Fault::IndexOutOfBounds>(index < items_.size());
+    require<Fault::IndexOutOfBounds>(index < items_.size(), "Array: item ", index,
+                                     " is asked for, there are ", items_.size());
     return items_[index];
   }
   /// @throws IndexOutOfBounds
   const T& operator[](std::size_t index) const {
-    require<Fault::IndexOutOfBounds>(index < items_.size());
+    require<Fault::IndexOutOfBounds>(index < items_.size(), "Array: item ", index,
+                                     " is asked for, there are ", items_.size());
     return items_[index];
   }
 

@@ -21,14 +21,16 @@ struct BB {
   /// @throws NegativeHalfDimensions
   /// MIS: BBNewForExtents
   [[gnu::always_inline]] static constexpr BB forExtents(const Vector<S>& center, S halfWidth, S halfHeight) {
-    require<Fault::NegativeHalfDimensions>(halfWidth >= S(0) && halfHeight >= S(0));
+    require<Fault::NegativeHalfDimensions>(halfWidth >= S(0) && halfHeight >= S(0), "BB: half its width is ",
+                                           halfWidth, " and half its height ", halfHeight,
+                                           ", allowed are 0 and above");
     return {center.x - halfWidth, center.y - halfHeight, center.x + halfWidth, center.y + halfHeight};
   }
 
   /// @throws NegativeRadius
   /// MIS: BBNewForCircle
   [[gnu::always_inline]] static constexpr BB forCircle(const Vector<S>& center, S radius) {
-    require<Fault::NegativeRadius>(radius >= S(0));
+    require<Fault::NegativeRadius>(radius >= S(0), "BB: radius is ", radius, ", allowed are 0 and above");
     return {center.x - radius, center.y - radius, center.x + radius, center.y + radius};
   }
 

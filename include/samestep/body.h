@@ -299,9 +299,10 @@ class Body {
   Scaled<S> inverseMass_{};
   Scaled<S> inverseMoment_{};
   S momentPerMass_{};
-  // Which Space it belongs to, and as which object: given by the Space, not part of the state.
+  // Which Space it belongs to, as which object, and how far from the origin it may be set there: given by the
+  // Space, not part of the state.
+  S extent_ = kMaxWorldExtent<S>;
   BodyId id_{};
-  std::uint32_t owner_ = 0;
   BodyType type_ = BodyType::dynamicBody;
   std::uint8_t rotates_ = 1;
   // Of a call from within a step.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
 
 namespace samestep {
 
@@ -66,26 +69,90 @@ enum class Fault : std::uint8_t {
   LeftMidway,  ///< The world of a Space in which an exception ended a change midway; see Space::isUsable.
 };
 
-/// The sentence a user reads: the MIS's own where it has one. MIS: message
+/// How many faults there are.
+inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::LeftMidway) + 1;
+
+/// The sentence of a fault that is told without values: the MIS's own where it has one. MIS: message
 const char* message(Fault fault);
 
-/// Base of everything the engine throws for a caller's mistake.
+/// Of which the text of an error is put together: a text that lives as long as the expression it stands in, a
+/// number, a vector or an id. Numbers are written as formatDecimal does, the same on every machine.
+class ErrorPart {
+ public:
+  ErrorPart(const char* text) noexcept : kind_(Kind::text), text_(text) {}
+  template <std::integral T>
+  ErrorPart(T number) noexcept
+      : kind_(number < T(0) ? Kind::negative : Kind::natural),
+        x_(static_cast<std::int64_t>(number < T(0) ? 0 - static_cast<std::uint64_t>(number)
+                                                   : static_cast<std::uint64_t>(number))) {}
+#ifndef SAMESTEP_FIXED_ONLY
+  ErrorPart(double number) noexcept : kind_(Kind::number), x_(bitsOf(number)) {}
+#endif
+  /// Of a fixed-point number.
+  template <class T>
+  requires requires(const T& x) {
+    x.raw();
+    T::kBits;
+  }
+  ErrorPart(const T& x) noexcept : kind_(Kind::number), fractionBits_(T::kBits), x_(x.raw()) {}
+  /// Of a vector: "(x, y)".
+  template <class T>
+  requires requires(const T& v) {
+    v.x;
+    v.y;
+  }
+  ErrorPart(const T& v) noexcept : ErrorPart(v.x) {
+    kind_ = Kind::vector;
+    y_ = ErrorPart(v.y).x_;
+  }
+  /// Of an id: "3 (generation 1)", or "none".
+  template <class T>
+  requires requires(const T& id) {
+    id.index;
+    id.generation;
+  }
+  ErrorPart(const T& id) noexcept
+      : kind_(id.valid() ? Kind::id : Kind::noId), x_(id.index), y_(id.generation) {}
+
+  /// Writes it, as far as there is room; where it ended.
+  char* write(char* to, const char* end) const noexcept;
+
+ private:
+  enum class Kind : std::uint8_t { text, negative, natural, number, vector, id, noId };
+
+  static std::int64_t bitsOf(double number) noexcept { return __builtin_bit_cast(std::int64_t, number); }
+  char* writeNumber(char* to, const char* end, std::int64_t bits) const noexcept;
+
+  Kind kind_;
+  int fractionBits_ = -1;  // Of a fixed-point number.
+  const char* text_ = nullptr;
+  std::int64_t x_ = 0;
+  std::int64_t y_ = 0;
+};
+
+/// Base of everything the engine throws for a caller's mistake. It has its text in itself, up to 255 bytes:
+/// what() holds as long as the error, and making one takes no memory and throws nothing.
 class Error : public std::exception {
  public:
-  Error(Fault fault, const char* text) : fault_(fault), text_(text) {}
+  /// How many bytes the text of an error has at most, its end included.
+  static constexpr std::size_t kTextBytes = 256;
+
+  Error(Fault fault, std::initializer_list<ErrorPart> text) noexcept;
   Fault fault() const { return fault_; }
+  /// What was asked for, with which value, and what is allowed.
   const char* what() const noexcept override { return text_; }
 
  private:
   Fault fault_;
-  const char* text_;
+  char text_[kTextBytes];
 };
 
 /// The exception type of one fault: catch (const NegativeMass&).
 template <Fault F>
 class FaultError : public Error {
  public:
-  explicit FaultError(const char* text = message(F)) : Error(F, text) {}
+  explicit FaultError(const char* text = message(F)) noexcept : Error(F, {text}) {}
+  explicit FaultError(std::initializer_list<ErrorPart> text) noexcept : Error(F, text) {}
 };
 
 using AttachedBody = FaultError<Fault::AttachedBody>;
@@ -147,7 +214,9 @@ using LeftMidway = FaultError<Fault::LeftMidway>;
 /// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.
 class FormatError : public MalformedBytes {
  public:
-  FormatError(std::uint64_t offset, const char* reason) : MalformedBytes(reason), offset_(offset) {}
+  FormatError(std::uint64_t offset, const char* reason) noexcept : FormatError(offset, {reason}) {}
+  FormatError(std::uint64_t offset, std::initializer_list<ErrorPart> reason) noexcept
+      : MalformedBytes(reason), offset_(offset) {}
   /// Of the first byte of what is wrong.
   std::uint64_t offset() const { return offset_; }
 
@@ -158,8 +227,7 @@ class FormatError : public MalformedBytes {
 /// Bytes of another revision of the simulation, whose results differ. The text names both.
 class RevisionError : public FormatError {
  public:
-  RevisionError(std::uint64_t offset, std::uint32_t found, std::uint32_t own);
-  const char* what() const noexcept override { return text_; }
+  RevisionError(std::uint64_t offset, std::uint32_t found, std::uint32_t own) noexcept;
   /// Of the build that made the bytes.
   std::uint32_t found() const { return found_; }
   /// Of this build.
@@ -168,20 +236,23 @@ class RevisionError : public FormatError {
  private:
   std::uint32_t found_;
   std::uint32_t own_;
-  char text_[112];
 };
 
+/// Asks the failure handler, then throws the exception of a fault; in a library built without exceptions it
+/// aborts. How the caller is built makes no difference.
+[[noreturn]] void failAs(Fault fault, std::initializer_list<ErrorPart> text);
+[[noreturn]] void failAs(Fault fault);
+/// Asks the failure handler, then aborts.
 [[noreturn]] void failWithoutExceptions(Fault fault, const char* text);
 
-/// Throws the exception of a fault, with the MIS's sentence or a more specific one that lives for ever. In a
-/// build without exceptions calls the failure handler, then aborts.
+/// Refuses a call, with the sentence of the fault or a text of parts: see failAs.
 template <Fault F>
-[[noreturn]] void fail(const char* text = message(F)) {
-#if defined(__cpp_exceptions)
-  throw FaultError<F>(text);
-#else
-  failWithoutExceptions(F, text);
-#endif
+[[noreturn]] void fail() {
+  failAs(F);
+}
+template <Fault F, class... Parts>
+[[noreturn, gnu::noinline, gnu::cold]] void fail(const Parts&... parts) {
+  failAs(F, {ErrorPart(parts)...});
 }
 
 /// Refuses the call unless the condition holds. Called before anything changes. MIS: assertHard, assertSoft
@@ -190,25 +261,33 @@ template <Fault F>
   if (!condition) [[unlikely]]
     fail<F>();
 }
-template <Fault F>
-[[gnu::always_inline]] inline constexpr void require(bool condition, const char* text) {
+/// @param parts  of what the error says
+template <Fault F, class... Parts>
+[[gnu::always_inline]] inline constexpr void require(bool condition, const Parts&... parts) {
   if (!condition) [[unlikely]]
-    fail<F>(text);
+    fail<F>(parts...);
 }
 
-/// Throws a FormatError, as fail does.
-/// @param reason  lives for ever
-[[noreturn]] inline void failFormat(std::uint64_t offset, const char* reason) {
-#if defined(__cpp_exceptions)
-  throw FormatError(offset, reason);
-#else
-  static_cast<void>(offset);
-  failWithoutExceptions(Fault::MalformedBytes, reason);
-#endif
-}
+/// Throws a FormatError, as failAs does.
+[[noreturn]] void failFormat(std::uint64_t offset, const char* reason);
 
-/// Throws a RevisionError, as fail does.
+/// Throws a RevisionError, as failAs does.
 [[noreturn]] void failRevision(std::uint64_t offset, std::uint32_t found, std::uint32_t own);
+
+/// Called with the fault before anything is thrown, or before a library without exceptions aborts; its text
+/// lasts as long as the call. A game built without exceptions gets no other chance: what is thrown ends it.
+/// What the library catches itself, as while it reads bytes, is told once, as what it becomes. Default: none.
+using FailureHandler = void (*)(Fault, const char* text);
+void setFailureHandler(FailureHandler handler);
+
+/// While one lives, this thread's failures are somebody's who catches them: the failure handler is not asked.
+class FailuresAreCaught {
+ public:
+  FailuresAreCaught() noexcept;
+  ~FailuresAreCaught();
+  FailuresAreCaught(const FailuresAreCaught&) = delete;
+  FailuresAreCaught& operator=(const FailuresAreCaught&) = delete;
+};
 
 /// Runs an action on bytes from outside: what the engine refuses is the fault of those at `offset`, but not a
 /// missing callback, nor that the caller wants it to end.
@@ -216,11 +295,12 @@ template <class Action>
 void orFailFormat(std::uint64_t offset, Action&& action) {
 #if defined(__cpp_exceptions)
   try {
+    const FailuresAreCaught caught;
     action();
-  } catch (const MissingCallback&) {
-    throw;
-  } catch (const Interrupted&) {
-    throw;
+  } catch (const MissingCallback& error) {
+    fail<Fault::MissingCallback>(error.what());
+  } catch (const Interrupted& error) {
+    fail<Fault::Interrupted>(error.what());
   } catch (const Error& error) {
     failFormat(offset, error.what());
   }
@@ -229,9 +309,5 @@ void orFailFormat(std::uint64_t offset, Action&& action) {
   action();
 #endif
 }
-
-/// Called with the fault before a build without exceptions aborts. Default: none.
-using FailureHandler = void (*)(Fault, const char* text);
-void setFailureHandler(FailureHandler handler);
 
 }  // namespace samestep

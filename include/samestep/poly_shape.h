@@ -45,7 +45,8 @@ class ConstPolyShape {
   /// @throws IndexOutOfBounds
   /// MIS: polyShapeGetVert
   Vector<S> vertex(int index) const {
-    require<Fault::IndexOutOfBounds>(index >= 0 && index < count());
+    require<Fault::IndexOutOfBounds>(index >= 0 && index < count(), "PolyShape::vertex: ", index,
+                                     " is asked for, of corners there are ", count());
     return shape_.vertices()[static_cast<std::size_t>(index)];
   }
   /// MIS: polyShapeGetRadius

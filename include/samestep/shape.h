@@ -115,17 +115,15 @@ class Shape {
 
   /// The id its Space knows it by; not valid() outside of one. MIS: shapeGetSpace
   constexpr ShapeId id() const { return id_; }
-  /// The serial number of that Space, 0 without one. Never saved or hashed.
-  constexpr std::uint64_t owner() const { return owner_; }
-  /// For a Space: from here on the shape is its own.
-  constexpr void attach(ShapeId id, std::uint64_t owner) {
+  /// For a Space: from here on the shape is its own, and so is the id of its body.
+  constexpr void attach(ShapeId id) {
     id_ = id;
-    owner_ = owner;
+    body_.space = id.space;
   }
   /// The same shape outside of any Space.
   constexpr Shape detached() const {
     Shape copy = *this;
-    copy.attach(ShapeId(), 0);
+    copy.id_ = ShapeId();
     return copy;
   }
 
@@ -176,7 +174,8 @@ class Shape {
   constexpr void setCollisionType(CollisionType type) { collisionType_ = type; }
   constexpr const ShapeFilter& filter() const { return filter_; }
   constexpr void setFilter(const ShapeFilter& filter) { filter_ = filter; }
-  /// A sensor reports contacts and never pushes.
+  /// A sensor reports contacts and never pushes. Of a shape that becomes one in contact, or is one no more,
+  /// the contact goes on: no separate and no begin is called for that.
   constexpr bool sensor() const { return sensor_ != 0; }
   constexpr void setSensor(bool sensor) { sensor_ = sensor ? 1 : 0; }
   /// Any 64 bits; saved with the shape.
@@ -199,8 +198,7 @@ class Shape {
   friend bool operator==(const Shape& a, const Shape& b) { return a.same(b); }
 
   /// Visits every field that is state, in order, as visit(name, field). `Self` is Shape or const Shape. The
-  /// owner is no state: it names a Space of this process; nor is the id, which says in which slot of the
-  /// state the shape is.
+  /// id is no state: it says in which slot of the state the shape is.
   template <class Self, class Visit>
   static constexpr void fields(Self& self, Visit&& visit) {
     visit("type", self.type_);
@@ -249,7 +247,6 @@ class Shape {
   S friction_{};
   Vector<S> surfaceVelocity_;
   std::uint64_t userData_ = 0;
-  std::uint64_t owner_ = 0;
   BodyId body_;
   ShapeId id_;
   CollisionType collisionType_ = kWildcardCollisionType;

@@ -61,8 +61,9 @@ class FreeSlots {
   std::vector<std::uint64_t> summary_;
 };
 
-/// Values named by ids: a slot and its generation. Every id given out names one value for ever: after erase
-/// it names nothing, whatever later uses the slot.
+/// Values named by ids: a slot and its generation. Every id given out names one value as long as the map goes
+/// forward: after erase it names nothing, whatever later uses the slot. Where restore, or an assignment,
+/// brings back an earlier state, ids that were given out since are given out again.
 ///
 /// A generation is odd while the slot is in use; insert and erase each raise it by one. A new value goes to
 /// the lowest free slot, or a caller says where: which ids come next follows from which slots are free, not
@@ -72,6 +73,10 @@ class SlotMap {
  public:
   /// The last even generation: a slot that reaches it is never used again.
   static constexpr std::uint32_t kRetired = 0xfffffffeu;
+
+  /// Whose its ids are, see Id::space; 0 until it is set. It goes with a copy, and is no part of the state.
+  std::uint32_t space() const { return space_; }
+  void setSpace(std::uint32_t space) { space_ = space; }
 
   /// Values in use.
   std::uint32_t size() const { return size_; }
@@ -92,7 +97,8 @@ class SlotMap {
   /// @throws IllegalSize when no index is left
   IdType insert(T value) {
     const IdType id = nextId();
-    require<Fault::IllegalSize>(id.index < IdType::kNoIndex);
+    require<Fault::IllegalSize>(id.index < IdType::kNoIndex, "SlotMap::insert: all ", IdType::kNoIndex,
+                                " slots are in use or used up");
     store(id, std::move(value));
     return id;
   }
@@ -107,10 +113,14 @@ class SlotMap {
   /// @throws IndexOutOfBounds if its index is not below kMaxGivenSlots; IllegalId unless its generation is
   ///         odd, below kRetired and higher than any its slot has had, and the slot free
   void checkGiven(IdType id) const {
-    require<Fault::IndexOutOfBounds>(id.index < kMaxGivenSlots);
+    require<Fault::IndexOutOfBounds>(id.index < kMaxGivenSlots, "given id ", id,
+                                     ": allowed are slots from 0 to ", kMaxGivenSlots - 1);
     const std::uint32_t before = id.index < slots() ? generations_[id.index] : 0;
-    require<Fault::IllegalId>((id.generation & 1) != 0 && id.generation < kRetired && (before & 1) == 0 &&
-                              id.generation > before);
+    require<Fault::IllegalId>((before & 1) == 0, "given id ", id, ": the slot is in use, by generation ",
+                              before);
+    require<Fault::IllegalId>(
+        (id.generation & 1) != 0 && id.generation < kRetired && id.generation > before, "given id ", id,
+        ": allowed are odd generations higher than any its slot has had, ", before, ", and below ", kRetired);
   }
 
   /// Makes room for a slot, so that storing there takes no memory.
@@ -147,23 +157,32 @@ class SlotMap {
   }
 
   bool contains(IdType id) const {
-    return id.index < slots() && generations_[id.index] == id.generation && aliveAt(id.index);
+    return id.index < slots() && generations_[id.index] == id.generation && aliveAt(id.index) && isOurs(id);
   }
+  /// Whether an id may be one of this map's.
+  bool isOurs(IdType id) const { return id.space == space_ || id.space == 0 || space_ == 0; }
   /// @pre slot < slots()
   bool aliveAt(std::uint32_t slot) const { return (generations_[slot] & 1) != 0; }
   /// The id of the value in a slot. @pre slot < slots() and aliveAt(slot)
   IdType idAt(std::uint32_t slot) const { return makeId(slot, generations_[slot]); }
 
+  /// @param asked  by what, for the error
   /// @throws the exception of fault F if the id names no value
   template <Fault F>
-  T& at(IdType id) {
-    require<F>(contains(id));
+  T& at(IdType id, const char* asked) {
+    requireAlive<F>(id, asked);
     return values_[id.index];
   }
   template <Fault F>
-  const T& at(IdType id) const {
-    require<F>(contains(id));
+  const T& at(IdType id, const char* asked) const {
+    requireAlive<F>(id, asked);
     return values_[id.index];
+  }
+  /// The same without the value.
+  template <Fault F>
+  void requireAlive(IdType id, const char* asked) const {
+    if (!contains(id)) [[unlikely]]
+      refuse<F>(id, asked);
   }
   /// The value or null.
   T* find(IdType id) { return contains(id) ? &values_[id.index] : nullptr; }
@@ -226,17 +245,29 @@ class SlotMap {
   }
 
  private:
-  static IdType makeId(std::uint32_t index, std::uint32_t generation) {
+  IdType makeId(std::uint32_t index, std::uint32_t generation) const {
     IdType id;
     id.index = index;
     id.generation = generation;
+    id.space = space_;
     return id;
+  }
+  /// Says why an id names no value.
+  template <Fault F>
+  [[noreturn, gnu::noinline, gnu::cold]] void refuse(IdType id, const char* asked) const {
+    if (!id.valid()) fail<F>(asked, ": the id names nothing");
+    if (!isOurs(id)) fail<F>(asked, ": id ", id, " is of another Space");
+    if (id.index >= slots())
+      fail<F>(asked, ": no id ", id, " was given out here, of slots there are ", slots());
+    fail<F>(asked, ": id ", id, " names nothing any more: its slot is at generation ", generations_[id.index],
+            aliveAt(id.index) ? ", in use" : ", free");
   }
 
   std::vector<T> values_;
   std::vector<std::uint32_t> generations_;
   FreeSlots free_;  // not state: follows from the generations
   std::uint32_t size_ = 0;
+  std::uint32_t space_ = 0;
 };
 
 }  // namespace samestep

@@ -260,7 +260,11 @@ class Space {
   void registerPositionFunc(CallbackNumber number, PositionFunc function, void* data = nullptr);
   void registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data = nullptr);
 
-  /// For shapes of these two types, A and B in this order.
+  /// For shapes of these two types, A and B in this order. kWildcardCollisionType as one of them stands for
+  /// every type that no handler names together with the other; as both, for shapes without a type of their
+  /// own. Where two such handlers fit, that of the shape with the lower id is called. Who is called follows
+  /// from the types of that moment: of shapes whose types change while they touch, begin may go to one
+  /// handler and separate to another.
   /// @throws MissingCallback, SpaceLocked
   /// MIS: spaceAddCollisionHandler
   void addCollisionHandler(CollisionType typeA, CollisionType typeB, CallbackNumber number);
@@ -300,7 +304,8 @@ class Space {
 
   // Stepping.
 
-  /// One step of dt seconds, in [0, 1]; 0 does nothing.
+  /// One step of dt seconds, in [0, 1]. 0 does nothing at all: no callback, no event, no push, no stamp; what
+  /// overlaps newly is told by the next step that takes time.
   /// @throws Interrupted, and what callbacks throw: the world is then left midway, see the class; LeftMidway;
   ///         SpaceLocked; ValueOutOfRange for dt; IllegalBody for a dynamic body without mass or moment;
   ///         MissingCallback for a number without function; UnsoundArithmetic for double in another mode of
@@ -424,7 +429,9 @@ class Space {
   void save(SavedSpace<S>& into) const;
   SavedSpace<S> save() const;
   /// Brings back a saved world, as often as wanted, also one of another Space. It continues exactly as the
-  /// original did.
+  /// original did, under the ids of the original: those of the world there was are refused from here on, if
+  /// it was that of another Space. What came to be after the world was saved has never been; its ids are
+  /// given out again, so who has kept one must drop it: see worldsBroughtIn.
   /// @throws SpaceLocked; ForeignWorld where nothing was saved; MissingCallback if this Space lacks a number
   ///         the world uses
   void restore(const SavedSpace<S>& saved);
@@ -432,8 +439,9 @@ class Space {
   /// @throws SpaceLocked, ForeignWorld, MissingCallback
   void adopt(const WorldState<S>& state);
   void adopt(WorldState<S>&& state);
-  /// How often another world was brought in, by restore, adopt or loadSnapshot. Wiring: a recorder goes by
-  /// it.
+  /// How often another world was brought in, by restore, adopt or loadSnapshot. Who keeps ids, or anything
+  /// else that follows from the world, beside it compares this: where it has changed, they are to be found
+  /// anew. No state: peers that restored differently often have other counts.
   std::uint64_t worldsBroughtIn() const;
   /// Forgets everything that can be computed again. Changes no result.
   /// @throws SpaceLocked
@@ -463,8 +471,11 @@ class Space {
   void requireUsable() const { require<Fault::LeftMidway>(!leftMidway_); }
   void requireUnlocked() const;
   /// Brings in a world whole, or leaves this one midway.
-  template <class Bring>
-  void bringIn(const WorldState<S>& state, Bring&& bring);
+  /// @param derived  what was computed from it, or null
+  template <class Take>
+  void bringIn(const WorldState<S>& state, const Derived<S>* derived, Take&& take);
+  /// From here on the ids of this world are those of the Space of a number; see Id::space.
+  void giveIds(std::uint32_t space);
   StepContext<S> contextOf(S dt = S(0));
   std::uint32_t firstShape(BodyId id) const;
   std::uint32_t nextShape(std::uint32_t index) const;

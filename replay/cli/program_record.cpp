@@ -27,11 +27,15 @@ int run(const Options& options) {
   Progress progress("record", ticks);
   std::uint64_t commands = 0;
   for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
-    while (const Command<S>* command = scene.nextCommand()) {
-      recorder.apply(*command);
-      ++commands;
+    try {
+      while (const Command<S>* command = scene.nextCommand()) {
+        recorder.apply(*command);
+        ++commands;
+      }
+      recorder.step();
+    } catch (const Error& error) {
+      throw scene.refused(error);
     }
-    recorder.step();
     progress.at(tick);
   }
   recorder.finish();

@@ -36,7 +36,9 @@ void checkIds(const Space<S>& space, const Spawn<S>& spawn) {
   for (std::size_t i = 0; i < spawn.shapes.size(); ++i) {
     space.state().shapes.checkGiven(spawn.shapes[i].id());
     for (std::size_t j = 0; j < i; ++j) {
-      require<Fault::IllegalId>(spawn.shapes[i].id().index != spawn.shapes[j].id().index);
+      require<Fault::IllegalId>(spawn.shapes[i].id().index != spawn.shapes[j].id().index,
+                                "a spawn: two of its shapes have given ids of slot ",
+                                spawn.shapes[i].id().index);
     }
   }
 }
@@ -45,7 +47,8 @@ void checkIds(const Space<S>& space, const Spawn<S>& spawn) {
 /// @throws IllegalBody for one too long to end there
 template <Scalar S>
 Vector<S> endOfArm(const Body<S>& body, const Vector<S>& arm) {
-  require<Fault::IllegalBody>(within(arm, kMaxWorldExtent<S> * S(4)), "Command's arm is too long.");
+  require<Fault::IllegalBody>(within(arm, kMaxWorldExtent<S> * S(4)), "a command: its arm is ", arm,
+                              " m, which does not end in the world");
   return body.worldCenter() + arm;
 }
 

@@ -51,7 +51,8 @@ struct CommandWriter {
 };
 
 void requireRecordableInput(std::size_t bytes) {
-  require<Fault::ValueOutOfRange>(bytes <= kMaxInputBytes, "A recorded input has at most 2^16 bytes.");
+  require<Fault::ValueOutOfRange>(bytes <= kMaxInputBytes, "Recorder: an input has ", bytes,
+                                  " bytes, allowed are up to ", kMaxInputBytes);
 }
 
 template <Scalar S>
@@ -231,7 +232,8 @@ Recorder<S>::Recorder(Space<S>& space, S timeStep, std::vector<std::uint8_t>& by
 template <Scalar S>
 Recorder<S>::Recorder(Space<S>& space, S timeStep, ByteSink sink, void* data, const Wiring<S>& wiring) {
   require<Fault::SpaceLocked>(!space.isLocked());
-  require<Fault::ValueOutOfRange>(timeStep > S(0) && timeStep <= kMaxTimeStep<S>);
+  require<Fault::ValueOutOfRange>(timeStep > S(0) && timeStep <= kMaxTimeStep<S>, "Recorder: time step is ",
+                                  timeStep, " s, allowed are above 0 to ", kMaxTimeStep<S>, " s");
   if (const char* flaw = flawOf(space.state())) fail<Fault::ForeignWorld>(flaw);
   auto impl = std::make_unique<Impl>(space, timeStep, sink, data, wiring);
   impl->begin();

@@ -91,7 +91,7 @@ class CommandReader {
       if (made.id.valid()) {
         ShapeId id;
         read_.get(id);
-        shape.attach(id, 0);
+        shape.attach(id);
       }
     }
     return command;

@@ -16,7 +16,8 @@ const char* unexpectedIn(const Replay<S>& replay, const Expectations& expected) 
   if (expected.scalar && *expected.scalar != ScalarTraits<S>::kKind) return "the scalar";
   if (expected.stepsPerSecond) {
     const std::uint32_t rate = *expected.stepsPerSecond;
-    require<Fault::ValueOutOfRange>(rate > 0 && rate <= 1000000, "Steps per second are 1 to 1000000.");
+    require<Fault::ValueOutOfRange>(rate > 0 && rate <= 1000000, "steps per second are ", rate,
+                                    ", allowed are 1 to 1000000");
     if (replay.timeStep() != ratio<S>(1, static_cast<int>(rate))) return "the time step";
   }
   if (expected.ticks && *expected.ticks != replay.ticks()) return "the number of steps";

@@ -30,6 +30,7 @@ Scene<S>::Scene(const SceneSource& source) {
 
 template <Scalar S>
 const Command<S>* Scene<S>::nextCommand() {
+  commandsDone_ = false;
   while (next_ < events_.size() && events_[next_].tick <= tick() + 1) {
     Event& event = events_[next_++];
     if (BodyId* target = targetOf(event.command)) {
@@ -40,13 +41,28 @@ const Command<S>* Scene<S>::nextCommand() {
     }
     return &event.command;
   }
+  commandsDone_ = true;
   return nullptr;
 }
 
 template <Scalar S>
+SceneError Scene<S>::refused(const Error& error) const {
+  if (commandsDone_) return {file_, 0, "", "step " + std::to_string(tick() + 1) + ": " + error.what()};
+  const Event& event = events_[next_ - 1];
+  return {event.isInput ? inputsFile_ : file_, event.line, "",
+          "\"" + std::string(commandName(kindOf(event.command))) + "\" at tick " +
+              std::to_string(event.tick) + ": " + error.what()};
+}
+
+template <Scalar S>
 void Scene<S>::step() {
-  while (const Command<S>* command = nextCommand()) applyCommand(space_, *command);
-  space_.step(timeStep_);
+  try {
+    const FailuresAreCaught caught;
+    while (const Command<S>* command = nextCommand()) applyCommand(space_, *command);
+    space_.step(timeStep_);
+  } catch (const Error& error) {
+    throw refused(error);
+  }
 }
 
 #define SAMESTEP_EACH_SCALAR template class Scene<S>;

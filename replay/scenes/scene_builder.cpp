@@ -7,6 +7,7 @@
 #include <samestep/segment_shape.h>
 
 #include "base/require_ieee.h"
+#include "dynamics/body_access.h"
 
 namespace samestep {
 
@@ -14,6 +15,7 @@ template <Scalar S>
 void SceneBuilder<S>::build() {
   registerNamedHandlers(scene_.space_);
   scene_.timeStep_ = ratio<S>(1, 60);
+  scene_.file_ = document_.file;
   if (document_.family == "pyramid") {
     buildPyramid(document_.size);
   } else if (document_.family == "soup") {
@@ -193,7 +195,26 @@ Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
     const Cursor shapes = at.at("shapes");
     for (std::uint32_t i = 0; i < shapes.size(); ++i) made.shapes.push_back(readShape(shapes.item(i)));
   }
+  refuseSecondMass(at, made);
   return made;
+}
+
+/// A body has its mass from itself or from its shapes: what would not be used is an error.
+template <Scalar S>
+void SceneBuilder<S>::refuseSecondMass(const Cursor& at, const Spawn<S>& body) {
+  const auto weighs = [](const Shape<S>& shape) { return shape.mass() > S(0); };
+  if (std::none_of(body.shapes.begin(), body.shapes.end(), weighs)) return;
+  for (const char* key : {"mass", "moment"}) {
+    if (at.has(key))
+      at.at(key).fail("means nothing to a body of which a shape has a mass: it has that of its shapes");
+  }
+}
+
+/// Refuses a body that no step could move.
+template <Scalar S>
+void SceneBuilder<S>::requireSteppable(const Cursor& at, const Space<S>& space, BodyId id) {
+  const char* reason = BodyAccess<S>::cannotStep(space.body(id));
+  if (reason != nullptr) at.fail(reason);
 }
 
 template <Scalar S>
@@ -289,6 +310,7 @@ void SceneBuilder<S>::addNamed(const Cursor& at, const std::string& name, const 
     at.fail(tooMany("shapes", kMaxSceneShapes));
   }
   const BodyId id = at.guard([&] { return addBody(body); });
+  requireSteppable(at, scene_.space_, id);
   if (!name.empty()) scene_.names_[newName(at, name)] = id;
 }
 

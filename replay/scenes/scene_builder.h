@@ -52,12 +52,15 @@ class SceneBuilder {
   std::vector<Vector<S>> readPoints(const Cursor& at);
   void readEvent(const Cursor& at, std::uint32_t spawned);
 
+  static void refuseSecondMass(const Cursor& at, const Spawn<S>& body);
+  static void requireSteppable(const Cursor& at, const Space<S>& space, BodyId id);
+
   BodyId addBody(const Spawn<S>& body);
   void addNamed(const Cursor& at, const std::string& name, const Spawn<S>& body);
   std::uint32_t newName(const Cursor& at, const std::string& name);
   /// kNoName where there is none.
   std::uint32_t nameOf(const std::string& name) const;
-  void addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name, Command<S>&& command);
+  Event& addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name, Command<S>&& command);
 
   Scene<S>& scene_;
   const SceneSource::Document& document_;

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "base/require_ieee.h"
+#include "dynamics/body_access.h"
 #include "scenes/scene_builder.h"
 
 namespace samestep {
@@ -57,6 +58,7 @@ class Row {
   template <class Action>
   auto guard(Action&& action) const {
     try {
+      const FailuresAreCaught caught;
       return action();
     } catch (const Error& error) {
       fail("", error.what());
@@ -138,6 +140,8 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
       // The velocity is that of the centre of mass, which the shape has moved.
       if (first && space.body(body).type() != BodyType::staticBody)
         space.body(body).setVelocity(row.vector<S>(5));
+      const char* reason = BodyAccess<S>::cannotStep(space.body(body));
+      if (reason != nullptr) row.fail("", reason);
     });
   });
   if (header) refuseHeader(file, 1);

@@ -24,6 +24,7 @@ class Cursor {
       : node_(&node), file_(&file), path_(std::move(path)) {}
 
   [[noreturn]] void fail(const std::string& reason) const;
+  std::uint32_t line() const { return node_->line; }
 
   /// Refuses what is no object, and keys other than these.
   void allow(std::initializer_list<std::string_view> keys) const;
@@ -64,6 +65,7 @@ class Cursor {
   template <class Action>
   auto guard(Action&& action) const {
     try {
+      const FailuresAreCaught caught;
       return action();
     } catch (const Error& error) {
       fail(error.what());

@@ -74,12 +74,10 @@ std::vector<std::string_view> splitFields(std::string_view line) {
 }  // namespace
 
 template <Scalar S>
-void SceneBuilder<S>::addEvent(const Cursor& at, std::uint64_t tick, std::uint32_t name,
-                               Command<S>&& command) {
-  if (scene_.events_.size() >= kMaxSceneEvents) {
-    at.fail(tooMany("events", kMaxSceneEvents));
-  }
-  scene_.events_.emplace_back(tick, name, std::move(command));
+typename SceneBuilder<S>::Event& SceneBuilder<S>::addEvent(const Cursor& at, std::uint64_t tick,
+                                                           std::uint32_t name, Command<S>&& command) {
+  if (scene_.events_.size() >= kMaxSceneEvents) at.fail(tooMany("events", kMaxSceneEvents));
+  return scene_.events_.emplace_back(tick, name, at.line(), std::move(command));
 }
 
 template <Scalar S>
@@ -117,7 +115,13 @@ void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
   const std::uint64_t tick = at.at("tick").integer(1, kMaxTick);
   if (*kind == CommandKind::spawn) {
     if (at.at("body").has("grid")) at.at("body").at("grid").fail("a spawn brings in one body");
-    addEvent(at, tick, spawned, readBody(at.at("body")));
+    const Cursor body = at.at("body");
+    const Spawn<S> made = readBody(body);
+    // Tried out, so that what cannot come in is told before the scene runs.
+    Space<S> trial;
+    trial.setWorldExtent(scene_.space_.worldExtent());
+    requireSteppable(body, trial, body.guard([&] { return applyCommand<S>(trial, made); }));
+    addEvent(at, tick, spawned, made);
     return;
   }
   const std::uint32_t name = nameOf(at.at("body").text());
@@ -134,6 +138,7 @@ template <Scalar S>
 void SceneBuilder<S>::readInputs(const Cursor& at) {
   const std::string file = document_.folder + at.text();
   const std::string text = document_.read(file);
+  scene_.inputsFile_ = file;
   bool header = true;
   eachLine(text, [&](std::uint32_t line, std::string_view content) {
     const auto fail = [&](const std::string& reason) { throw SceneError(file, line, "", reason); };
@@ -166,7 +171,9 @@ void SceneBuilder<S>::readInputs(const Cursor& at) {
       const char* reason = reasonOf(parseDecimal(digits, value[i]));
       if (reason != nullptr) fail(column + ", \"" + std::string(digits) + "\": " + reason);
     }
-    addEvent(at, tick, name, commandWith<S>(*kind, {value[0], value[1]}, {}));
+    Event& event = addEvent(at, tick, name, commandWith<S>(*kind, {value[0], value[1]}, {}));
+    event.line = line;
+    event.isInput = true;
   });
   if (header) throw SceneError(file, 1, "", "the first line must be: tick,body,do,x,y");
 }

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/error.h>
 
+#include <array>
 #include <cstdlib>
+#include <string_view>
+#include <utility>
+
+#include <samestep/raw_decimal.h>
 
 namespace samestep {
 
@@ -124,42 +129,153 @@ const char* message(Fault fault) {
   return "Unknown fault.";
 }
 
+#ifndef SAMESTEP_FIXED_ONLY
+// Where decimals of double are made.
+char* writeDecimal(char* to, const char* end, double number) noexcept;
+#endif
+
 namespace {
 
 FailureHandler failureHandler = nullptr;
+thread_local int catchers = 0;
 
-char* append(char* to, const char* text) {
-  while (*text != 0) *to++ = *text++;
+char* write(char* to, const char* end, std::string_view text) noexcept {
+  for (const char c : text) {
+    if (to == end) break;
+    *to++ = c;
+  }
   return to;
 }
-char* append(char* to, std::uint32_t number) {
-  if (number >= 10) to = append(to, number / 10);
-  *to = static_cast<char>('0' + number % 10);
-  return to + 1;
+
+char* writeWhole(char* to, const char* end, std::int64_t number) noexcept {
+  raw::DecimalText digits;
+  raw::appendInteger(digits, static_cast<std::uint64_t>(number), 1);
+  return write(to, end, digits.view());
 }
+
+/// The text of an error, which the failure handler is asked about.
+struct ToldText {
+  char bytes[Error::kTextBytes];
+
+  ToldText(Fault fault, std::initializer_list<ErrorPart> parts) noexcept {
+    char* to = bytes;
+    const char* const end = bytes + Error::kTextBytes - 1;
+    for (const ErrorPart& part : parts) to = part.write(to, end);
+    *to = 0;
+    if (failureHandler != nullptr && catchers == 0) failureHandler(fault, bytes);
+  }
+};
+
+#if defined(__cpp_exceptions)
+
+template <std::size_t I>
+[[noreturn]] void throwFault(const char* text) {
+  throw FaultError<static_cast<Fault>(I)>(text);
+}
+
+using Thrower = void (*)(const char* text);
+template <std::size_t... I>
+constexpr std::array<Thrower, kFaults> throwers(std::index_sequence<I...>) {
+  return {&throwFault<I>...};
+}
+constexpr std::array<Thrower, kFaults> kThrowers = throwers(std::make_index_sequence<kFaults>());
+
+#endif
 
 }  // namespace
 
-RevisionError::RevisionError(std::uint64_t offset, std::uint32_t found, std::uint32_t own)
-    : FormatError(offset, message(Fault::MalformedBytes)), found_(found), own_(own) {
-  char* end = append(append(text_, "made by simulation revision "), found);
-  end = append(append(append(end, ", whose results differ from those of revision "), own), ", this build's");
-  *end = 0;
+char* ErrorPart::writeNumber(char* to, const char* end, std::int64_t bits) const noexcept {
+  if (fractionBits_ >= 0) return samestep::write(to, end, raw::formatDecimal(bits, fractionBits_).view());
+#ifndef SAMESTEP_FIXED_ONLY
+  return writeDecimal(to, end, __builtin_bit_cast(double, bits));
+#else
+  return to;
+#endif
 }
 
-[[noreturn]] void failRevision(std::uint64_t offset, std::uint32_t found, std::uint32_t own) {
+char* ErrorPart::write(char* to, const char* end) const noexcept {
+  const auto text = [&](std::string_view part) { to = samestep::write(to, end, part); };
+  switch (kind_) {
+    case Kind::text:
+      text(text_);
+      return to;
+    case Kind::negative:
+      text("-");
+      return writeWhole(to, end, x_);
+    case Kind::natural:
+      return writeWhole(to, end, x_);
+    case Kind::number:
+      return writeNumber(to, end, x_);
+    case Kind::vector:
+      text("(");
+      to = writeNumber(to, end, x_);
+      text(", ");
+      to = writeNumber(to, end, y_);
+      text(")");
+      return to;
+    case Kind::id:
+      to = writeWhole(to, end, x_);
+      text(" (generation ");
+      to = writeWhole(to, end, y_);
+      text(")");
+      return to;
+    case Kind::noId:
+      text("none");
+      return to;
+  }
+  return to;
+}
+
+Error::Error(Fault fault, std::initializer_list<ErrorPart> text) noexcept : fault_(fault) {
+  char* to = text_;
+  for (const ErrorPart& part : text) to = part.write(to, text_ + kTextBytes - 1);
+  *to = 0;
+}
+
+RevisionError::RevisionError(std::uint64_t offset, std::uint32_t found, std::uint32_t own) noexcept
+    : FormatError(offset, {"made by simulation revision ", found,
+                           ", whose results differ from those of revision ", own, ", this build's"}),
+      found_(found),
+      own_(own) {}
+
+void failAs(Fault fault, std::initializer_list<ErrorPart> parts) {
+  const ToldText text(fault, parts);
 #if defined(__cpp_exceptions)
-  throw RevisionError(offset, found, own);
-#else
-  failWithoutExceptions(Fault::MalformedBytes, RevisionError(offset, found, own).what());
+  if (static_cast<std::size_t>(fault) < kFaults) kThrowers[static_cast<std::size_t>(fault)](text.bytes);
 #endif
+  std::abort();
+}
+
+void failAs(Fault fault) { failAs(fault, {message(fault)}); }
+
+void failFormat(std::uint64_t offset, const char* reason) {
+  const ToldText text(Fault::MalformedBytes, {reason});
+#if defined(__cpp_exceptions)
+  throw FormatError(offset, text.bytes);
+#else
+  static_cast<void>(offset);
+  std::abort();
+#endif
+}
+
+void failRevision(std::uint64_t offset, std::uint32_t found, std::uint32_t own) {
+  const RevisionError error(offset, found, own);
+  const ToldText text(Fault::MalformedBytes, {error.what()});
+#if defined(__cpp_exceptions)
+  throw error;
+#else
+  std::abort();
+#endif
+}
+
+void failWithoutExceptions(Fault fault, const char* text) {
+  const ToldText told(fault, {text});
+  std::abort();
 }
 
 void setFailureHandler(FailureHandler handler) { failureHandler = handler; }
 
-[[noreturn]] void failWithoutExceptions(Fault fault, const char* text) {
-  if (failureHandler != nullptr) failureHandler(fault, text);
-  std::abort();
-}
+FailuresAreCaught::FailuresAreCaught() noexcept { ++catchers; }
+FailuresAreCaught::~FailuresAreCaught() { --catchers; }
 
 }  // namespace samestep

@@ -87,7 +87,8 @@ BBTree<S>* BBTree<S>::staticTree() const {
 
 template <Scalar S>
 void BBTree<S>::setMargin(S margin) {
-  require<Fault::NegativeHalfDimensions>(margin >= S(0));
+  require<Fault::NegativeHalfDimensions>(margin >= S(0), "BBTree: margin is ", margin,
+                                         " m, allowed are 0 and above");
   margin_ = margin;
   for (IndexKey key = 0; key < tree_.keyEnd(); ++key) {
     if (tree_.contains(key)) place(key, BB<S>(rooms_[key]));

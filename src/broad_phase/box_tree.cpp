@@ -145,7 +145,8 @@ BoxTree::Place BoxTree::findSibling(const GridBox& box, Place start) const {
 }
 
 void BoxTree::insert(Key key, const GridBox& box) {
-  require<Fault::IndexOutOfBounds>(key < kMaxKeys);
+  require<Fault::IndexOutOfBounds>(key < kMaxKeys, "a tree: key is ", key, ", allowed are 0 to ",
+                                   kMaxKeys - 1);
   require<Fault::InsufficientBufferSize>(count_ < maxLeaves_);
   if (key >= places_.size()) places_.resize(key + 1, kNone);
   ++count_;

@@ -39,7 +39,8 @@ bool BruteForceIndex<S>::contains(IndexKey object) const {
 
 template <Scalar S>
 void BruteForceIndex<S>::insert(IndexKey object) {
-  require<Fault::IndexOutOfBounds>(object < BoxTree::kMaxKeys);
+  require<Fault::IndexOutOfBounds>(object < BoxTree::kMaxKeys, "an index: key is ", object,
+                                   ", allowed are 0 to ", BoxTree::kMaxKeys - 1);
   const BB<S> box = this->boxOf(object);
   const auto at = firstFrom(entries_, object);
   if (at != entries_.end() && at->key == object) {

@@ -6,26 +6,27 @@
 #include "base/require_ieee.h"
 #include "contacts/contact_geometry.h"
 #include "contacts/contact_row.h"
+#include "geometry/shape_geometry.h"
 
 namespace samestep {
 
 template <Scalar S>
 void Arbiter<S>::setRestitution(S restitution) {
-  require<Fault::ValueOutOfRange>(restitution <= S(kMaxMaterial) && isFinite(restitution));
-  require<Fault::NegativeElasticity>(restitution >= S(0));
+  requireMaterial<Fault::NegativeElasticity>(restitution, "Arbiter::setRestitution: restitution is ");
   pair_.elasticity = restitution;
 }
 
 template <Scalar S>
 void Arbiter<S>::setFriction(S friction) {
-  require<Fault::ValueOutOfRange>(friction <= S(kMaxMaterial) && isFinite(friction));
-  require<Fault::NegativeFriction>(friction >= S(0));
+  requireMaterial<Fault::NegativeFriction>(friction, "Arbiter::setFriction: friction is ");
   pair_.friction = friction;
 }
 
 template <Scalar S>
 void Arbiter<S>::setSurfaceVelocity(const Vector<S>& velocity) {
-  require<Fault::ValueOutOfRange>(within(velocity, S(kMaxMaterial)));
+  require<Fault::ValueOutOfRange>(within(velocity, S(kMaxMaterial)),
+                                  "Arbiter::setSurfaceVelocity: velocity is ", velocity,
+                                  " m/s, allowed are up to ", kMaxMaterial, " m/s along each axis");
   pair_.surfaceVelocity = swapped_ ? -velocity : velocity;
 }
 
@@ -37,14 +38,16 @@ Vector<S> Arbiter<S>::normal() const {
 
 template <Scalar S>
 Vector<S> Arbiter<S>::pointA(int index) const {
-  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count());
+  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count(), "Arbiter: contact ", index,
+                                          " is asked for, of contacts there are ", count());
   const Contact<S>& contact = pair_.contacts[index];
   return swapped_ ? bodies_[1]->toWorld(contact.anchorB) : bodies_[0]->toWorld(contact.anchorA);
 }
 
 template <Scalar S>
 Vector<S> Arbiter<S>::pointB(int index) const {
-  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count());
+  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count(), "Arbiter: contact ", index,
+                                          " is asked for, of contacts there are ", count());
   const Contact<S>& contact = pair_.contacts[index];
   return swapped_ ? bodies_[0]->toWorld(contact.anchorA) : bodies_[1]->toWorld(contact.anchorB);
 }
@@ -75,20 +78,25 @@ bool isWithinReach(const Body<S>& body, const Vector<S>& point) {
 
 template <Scalar S>
 void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
-  require<Fault::ImmutableNumContacts>(set.count == count());
+  require<Fault::ImmutableNumContacts>(set.count == count(), "Arbiter::setContactPointSet: points are ",
+                                       set.count, ", allowed are as many as there are contacts, ", count());
   const S slack = ratio<S>(1, 1024);
   const S size = within(set.normal, S(2)) ? length(set.normal) : S(0);
   require<Fault::ValueOutOfRange>(size >= S(1) - slack && size <= S(1) + slack,
-                                  "The normal of a contact is not a unit vector.");
+                                  "Arbiter::setContactPointSet: the normal is ", set.normal,
+                                  ", of length 1 is allowed");
   const Body<S>& first = swapped_ ? *bodies_[1] : *bodies_[0];
   const Body<S>& second = swapped_ ? *bodies_[0] : *bodies_[1];
   for (int i = 0; i < set.count; ++i) {
     require<Fault::ValueOutOfRange>(
         within(set.points[i].pointA, kMaxWorldExtent<S>) && within(set.points[i].pointB, kMaxWorldExtent<S>),
-        "A point of a contact is outside the world.");
+        "Arbiter::setContactPointSet: the places of point ", i, " are ", set.points[i].pointA, " and ",
+        set.points[i].pointB, " m, allowed are up to ", kMaxWorldExtent<S>, " m along each axis");
     require<Fault::ValueOutOfRange>(
         isWithinReach(first, set.points[i].pointA) && isWithinReach(second, set.points[i].pointB),
-        "A point of a contact is more than 2^10 m from the centre of mass of a body that moves.");
+        "Arbiter::setContactPointSet: the places of point ", i, " are ", set.points[i].pointA, " and ",
+        set.points[i].pointB, " m, allowed are up to ", 4 * kMaxDynamicExtent,
+        " m along each axis from the centre of mass of a body that moves");
   }
 
   pair_.localNormal = unrotate(swapped_ ? -set.normal : set.normal, bodies_[0]->rotation());

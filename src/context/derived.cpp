@@ -325,7 +325,7 @@ void Derived<S>::findBodyPairs(const WorldState<S>& world) {
 
 template <Scalar S>
 std::span<const std::uint32_t> Derived<S>::pairsOf(const WorldState<S>& world, BodyId id) {
-  require<Fault::BodyNotFound>(world.bodies.contains(id));
+  world.bodies.template requireAlive<Fault::BodyNotFound>(id, "shapes or contacts of a body");
   if (!bodyPairs.known) findBodyPairs(world);
   // A body added since then touches nothing yet.
   if (id.index + 1 >= bodyPairs.start.size()) return {};

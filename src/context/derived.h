@@ -230,7 +230,7 @@ struct Derived {
   /// The first shape of a body, by rising slot; kNone without.
   /// @throws BodyNotFound
   std::uint32_t firstShapeOf(const WorldState<S>& world, BodyId id) {
-    require<Fault::BodyNotFound>(world.bodies.contains(id));
+    world.bodies.template requireAlive<Fault::BodyNotFound>(id, "shapes or contacts of a body");
     ensure(world);
     return firstShape[id.index];
   }

@@ -87,8 +87,6 @@ struct Wiring {
   BoundHandlers<RegisteredHandler> bound;
   StageObserverFunc<S> observer = nullptr;
   void* observerData = nullptr;
-  /// Tells the objects of this Space from those of another; 0 is nobody's.
-  std::uint32_t serial = 0;
   TaskRunner* runner = nullptr;
   KernelTarget kernel = nextBestKernel(KernelTarget::best);
   std::uint32_t maxPairs = kDefaultMaxPairs;
@@ -121,10 +119,12 @@ struct Wiring {
   bool has(CallbackNumber handler) const { return find(handlers, handler) != nullptr; }
   /// @throws MissingCallback where a function of the body is not registered
   void requireCallbacks(const Body<S>& body) const {
-    require<Fault::MissingCallback>(body.positionFunc() == 0 ||
-                                    find(positionFuncs, body.positionFunc()) != nullptr);
-    require<Fault::MissingCallback>(body.velocityFunc() == 0 ||
-                                    find(velocityFuncs, body.velocityFunc()) != nullptr);
+    require<Fault::MissingCallback>(
+        body.positionFunc() == 0 || find(positionFuncs, body.positionFunc()) != nullptr, "body ", body.id(),
+        ": no position function is registered under ", body.positionFunc());
+    require<Fault::MissingCallback>(
+        body.velocityFunc() == 0 || find(velocityFuncs, body.velocityFunc()) != nullptr, "body ", body.id(),
+        ": no velocity function is registered under ", body.velocityFunc());
   }
 };
 

@@ -9,34 +9,41 @@
 namespace samestep {
 namespace {
 
-constexpr const char* kBadPosition = "Body's position is invalid.";
-constexpr const char* kBadCenterOfMass = "Body's centre of mass is too far from its origin.";
-constexpr const char* kBadTimeStep = "The time step of a body is invalid.";
-constexpr const char* kBadVelocity = "Body's velocity is invalid.";
-constexpr const char* kBadForce = "Body's force is invalid.";
-constexpr const char* kBadAngle = "Body's angle is invalid.";
-constexpr const char* kBadAngularVelocity = "Body's angular velocity is invalid.";
-constexpr const char* kBadTorque = "Body's torque is invalid.";
-
 template <Scalar S>
-bool isNaN(S x) {
-  return !(x == x);
+void requireMass(S mass, const char* asked) {
+  constexpr const char* is = ": mass is ";
+  require<Fault::NaNMass>(mass == mass, asked, is, mass);
+  require<Fault::NegativeMass>(mass >= S(0), asked, is, mass, " kg, allowed are 0 and ", kMinMass<S>, " to ",
+                               kMaxMass<S>, " kg");
+  require<Fault::InfiniteMass>(isFinite(mass), asked, is, mass, "; a body that nothing moves is static");
+  require<Fault::MassOutOfRange>(mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>), asked, is,
+                                 mass, " kg, allowed are 0 and ", kMinMass<S>, " to ", kMaxMass<S>, " kg");
 }
 
 template <Scalar S>
-void checkMass(S mass) {
-  require<Fault::NaNMass>(!isNaN(mass));
-  require<Fault::NegativeMass>(mass >= S(0));
-  require<Fault::InfiniteMass>(isFinite(mass));
-  require<Fault::MassOutOfRange>(mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>));
+void requireMoment(S moment, const char* asked) {
+  constexpr const char* is = ": moment is ";
+  require<Fault::NaNMoment>(moment == moment, asked, is, moment);
+  require<Fault::NegativeMoment>(moment >= S(0), asked, is, moment, " kg m^2, allowed are 0 and ",
+                                 kMinMoment<S>, " to ", kMaxMoment<S>, " kg m^2");
+  require<Fault::InfiniteMoment>(isFinite(moment), asked, is, moment,
+                                 "; see Body::nonRotating for a body that does not turn");
+  require<Fault::MomentOutOfRange>(moment == S(0) || (moment >= kMinMoment<S> && moment <= kMaxMoment<S>),
+                                   asked, is, moment, " kg m^2, allowed are 0 and ", kMinMoment<S>, " to ",
+                                   kMaxMoment<S>, " kg m^2");
 }
 
-template <Scalar S>
-void checkMoment(S moment) {
-  require<Fault::NaNMoment>(!isNaN(moment));
-  require<Fault::NegativeMoment>(moment >= S(0));
-  require<Fault::InfiniteMoment>(isFinite(moment));
-  require<Fault::MomentOutOfRange>(moment == S(0) || (moment >= kMinMoment<S> && moment <= kMaxMoment<S>));
+/// Refuses a number, or a vector by its components.
+/// @param is  "Body::setForce: force is "
+template <class T, Scalar S>
+void requireWithin(const T& value, S limit, const char* is, const char* unit) {
+  require<Fault::IllegalBody>(within(value, limit), is, value, unit, ", allowed are -", limit, " to ", limit,
+                              unit);
+}
+
+/// Says of which kind a body is that is not dynamic.
+const char* kindOf(BodyType type) {
+  return type == BodyType::staticBody ? ": the body is static" : ": the body is kinematic";
 }
 
 /// What a force does to a thing of that inverse mass, kept where sums with gravity cannot overflow.
@@ -50,8 +57,8 @@ S answer(S force, const Scaled<S>& inverse) {
 
 template <Scalar S>
 Body<S>::Body(S mass, S moment) {
-  checkMass(mass);
-  checkMoment(moment);
+  requireMass(mass, "Body");
+  requireMoment(moment, "Body");
 
   mass_ = mass;
   moment_ = toScaled(moment);
@@ -83,7 +90,7 @@ template <Scalar S>
 Body<S> Body<S>::detached() const {
   Body copy = *this;
   copy.id_ = {};
-  copy.owner_ = 0;
+  copy.extent_ = kMaxWorldExtent<S>;
   return copy;
 }
 
@@ -118,8 +125,8 @@ bool Body<S>::wellFormed() const {
 
 template <Scalar S>
 void Body<S>::setType(BodyType type) {
-  require<Fault::AttachedBody>(!id_.valid(),
-                               "The type of a body in a space is changed by the space: see Space::setType.");
+  require<Fault::AttachedBody>(!id_.valid(), "Body::setType: the body is in a Space, as ", id_,
+                               "; its type is changed by Space::setType");
   type_ = type;
   forgetBias();
   if (type == BodyType::staticBody) {
@@ -136,8 +143,9 @@ S Body<S>::moment() const {
 
 template <Scalar S>
 void Body<S>::setMass(S mass) {
-  require<Fault::StaticBodyMass>(isDynamic());
-  checkMass(mass);
+  require<Fault::StaticBodyMass>(isDynamic(), "Body::setMass to ", mass, " kg", kindOf(type_),
+                                 ", only a dynamic one has a mass");
+  requireMass(mass, "Body::setMass");
 
   mass_ = mass;
   derive();
@@ -145,8 +153,9 @@ void Body<S>::setMass(S mass) {
 
 template <Scalar S>
 void Body<S>::setMoment(S moment) {
-  require<Fault::StaticBodyMass>(isDynamic());
-  checkMoment(moment);
+  require<Fault::StaticBodyMass>(isDynamic(), "Body::setMoment to ", moment, " kg m^2", kindOf(type_),
+                                 ", only a dynamic one has a moment");
+  requireMoment(moment, "Body::setMoment");
 
   moment_ = toScaled(moment);
   rotates_ = 1;
@@ -157,8 +166,9 @@ template <Scalar S>
 void Body<S>::setMassProperties(const MassProperties<S>& properties) {
   const S mass = properties.mass;
   require<Fault::IllegalBody>(mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>),
-                              "Body's mass, summed over its shapes, is outside the supported range.");
-  require<Fault::IllegalBody>(within(properties.centerOfMass, kMaxCenterOfMass<S>), kBadCenterOfMass);
+                              "a body: mass, summed over its shapes, is ", mass, " kg, allowed are ",
+                              kMinMass<S>, " to ", kMaxMass<S>, " kg");
+  requireWithin(properties.centerOfMass, kMaxCenterOfMass<S>, "a body: centre of mass is ", " m");
 
   mass_ = mass;
   moment_ = properties.moment;
@@ -196,7 +206,9 @@ void Body<S>::moveCenter(const Vector<S>& center) {
 
 template <Scalar S>
 void Body<S>::setPosition(const Vector<S>& position) {
-  require<Fault::IllegalBody>(within(position, kMaxWorldExtent<S>), kBadPosition);
+  // What a position function sets is held within the world by the step.
+  requireWithin(position, stepping_ != 0 ? kMaxWorldExtent<S> : extent_, "Body::setPosition: position is ",
+                " m");
 
   center_ = position + rotate(centerOfMass_, rotation_);
   // A push out of where it no longer is.
@@ -205,29 +217,31 @@ void Body<S>::setPosition(const Vector<S>& position) {
 
 template <Scalar S>
 void Body<S>::setCenterOfMass(const Vector<S>& center) {
-  require<Fault::IllegalBody>(within(center, kMaxCenterOfMass<S>), kBadCenterOfMass);
+  requireWithin(center, kMaxCenterOfMass<S>, "Body::setCenterOfMass: centre is ", " m");
 
   moveCenter(center);
 }
 
 template <Scalar S>
 void Body<S>::setVelocity(const Vector<S>& velocity) {
-  require<Fault::IllegalBody>(within(velocity, kMaxSpeed<S>), kBadVelocity);
-  require<Fault::IllegalBody>(type_ != BodyType::staticBody || velocity == Vector<S>(), kBadVelocity);
+  requireWithin(velocity, kMaxSpeed<S>, "Body::setVelocity: velocity is ", " m/s");
+  require<Fault::IllegalBody>(type_ != BodyType::staticBody || velocity == Vector<S>(),
+                              "Body::setVelocity: velocity is ", velocity,
+                              " m/s, allowed is 0 for a static body");
 
   velocity_ = velocity;
 }
 
 template <Scalar S>
 void Body<S>::setForce(const Vector<S>& force) {
-  require<Fault::IllegalBody>(within(force, kMaxForce<S>), kBadForce);
+  requireWithin(force, kMaxForce<S>, "Body::setForce: force is ", " N");
 
   force_ = force;
 }
 
 template <Scalar S>
 void Body<S>::setAngle(S angle) {
-  require<Fault::IllegalBody>(within(angle, kMaxAngle<S>), kBadAngle);
+  requireWithin(angle, kMaxAngle<S>, "Body::setAngle: angle is ", " rad");
   const Vector<S> origin = position();
 
   angle_ = angle;
@@ -239,15 +253,18 @@ void Body<S>::setAngle(S angle) {
 
 template <Scalar S>
 void Body<S>::setAngularVelocity(S angularVelocity) {
-  require<Fault::IllegalBody>(within(angularVelocity, kMaxAngularSpeed<S>), kBadAngularVelocity);
-  require<Fault::IllegalBody>(type_ != BodyType::staticBody || angularVelocity == S(0), kBadAngularVelocity);
+  requireWithin(angularVelocity, kMaxAngularSpeed<S>, "Body::setAngularVelocity: angular velocity is ",
+                " rad/s");
+  require<Fault::IllegalBody>(type_ != BodyType::staticBody || angularVelocity == S(0),
+                              "Body::setAngularVelocity: angular velocity is ", angularVelocity,
+                              " rad/s, allowed is 0 for a static body");
 
   angularVelocity_ = angularVelocity;
 }
 
 template <Scalar S>
 void Body<S>::setTorque(S torque) {
-  require<Fault::IllegalBody>(within(torque, kMaxForce<S>), kBadTorque);
+  requireWithin(torque, kMaxForce<S>, "Body::setTorque: torque is ", " N m");
 
   torque_ = torque;
 }
@@ -259,8 +276,8 @@ Vector<S> Body<S>::velocityAt(const Vector<S>& worldPoint) const {
 
 template <Scalar S>
 typename Body<S>::Motion Body<S>::pushed(const Vector<S>& impulse, const Vector<S>& worldPoint) const {
-  require<Fault::IllegalBody>(within(impulse, kMaxForce<S>) && within(worldPoint, kMaxWorldExtent<S>),
-                              "Body's impulse is invalid.");
+  requireWithin(impulse, kMaxForce<S>, "an impulse on a body: it is ", " N s");
+  requireWithin(worldPoint, kMaxWorldExtent<S>, "an impulse on a body: its point is ", " m");
   if (!isDynamic()) return {};
   const Vector<S> arm = worldPoint - center_;
   const Scaled<S> turning = toScaled(arm.x) * toScaled(impulse.y) - toScaled(arm.y) * toScaled(impulse.x);
@@ -285,8 +302,8 @@ void Body<S>::applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldP
 
 template <Scalar S>
 void Body<S>::applyForce(const Vector<S>& force, const Vector<S>& worldPoint) {
-  require<Fault::IllegalBody>(within(force, kMaxForce<S>), kBadForce);
-  require<Fault::IllegalBody>(within(worldPoint, kMaxWorldExtent<S>), kBadPosition);
+  requireWithin(force, kMaxForce<S>, "Body::applyForce: force is ", " N");
+  requireWithin(worldPoint, kMaxWorldExtent<S>, "Body::applyForce: point is ", " m");
   // Far below 2^31 before they are added, so that Fixed cannot wrap.
   const Scaled<S> fx = toScaled(force_.x) + toScaled(force.x);
   const Scaled<S> fy = toScaled(force_.y) + toScaled(force.y);
@@ -294,8 +311,8 @@ void Body<S>::applyForce(const Vector<S>& force, const Vector<S>& worldPoint) {
   const Scaled<S> turning = toScaled(arm.x) * toScaled(force.y) - toScaled(arm.y) * toScaled(force.x);
   const Vector<S> sum(toScalar<S>(fx), toScalar<S>(fy));
   const S torque = saturated<S>(toScaled(torque_) + turning);
-  require<Fault::IllegalBody>(within(sum, kMaxForce<S>), kBadForce);
-  require<Fault::IllegalBody>(within(torque, kMaxForce<S>), kBadTorque);
+  requireWithin(sum, kMaxForce<S>, "Body::applyForce: the sum of forces is ", " N");
+  requireWithin(torque, kMaxForce<S>, "Body::applyForce: the sum of torques is ", " N m");
 
   force_ = sum;
   torque_ = torque;
@@ -304,9 +321,9 @@ void Body<S>::applyForce(const Vector<S>& force, const Vector<S>& worldPoint) {
 template <Scalar S>
 const char* Body<S>::cannotStep() const {
   if (!isDynamic()) return nullptr;
-  if (mass_ == S(0)) return "Body's mass is zero: set it, or give the body a shape with a mass.";
+  if (mass_ == S(0)) return "mass is 0: set it, or give the body a shape with a mass";
   if (rotates() && !(moment_ > Scaled<S>{})) {
-    return "Body's moment is zero: set it, give the body a shape with a mass, or use Body::nonRotating.";
+    return "moment is 0: set it, give the body a shape with a mass, or use Body::nonRotating";
   }
   return nullptr;
 }
@@ -372,11 +389,13 @@ std::uint8_t Body<S>::holdMoved(const Vector<S>& by, S angle, S extent) {
 
 template <Scalar S>
 void Body<S>::updatePosition(S dt) {
-  require<Fault::IllegalBody>(within(dt, kMaxTimeStep<S>), kBadTimeStep);
+  requireWithin(dt, kMaxTimeStep<S>, "Body::updatePosition: dt is ", " s");
   const Vector<S> moved = mulAdd(velocity_ + velocityBias_, dt, center_);
   const S turned = mulAdd(angularVelocity_ + angularVelocityBias_, dt, angle_);
-  require<Fault::IllegalBody>(stepping_ != 0 || within(moved, kMaxWorldExtent<S>), kBadPosition);
-  require<Fault::IllegalBody>(stepping_ != 0 || within(turned, kMaxAngle<S>), kBadAngle);
+  if (stepping_ == 0) {
+    requireWithin(moved, kMaxWorldExtent<S>, "Body::updatePosition: it leads to ", " m");
+    requireWithin(turned, kMaxAngle<S>, "Body::updatePosition: it leads to an angle of ", " rad");
+  }
 
   held_ |= holdPosition(dt, kMaxWorldExtent<S>);
 }
@@ -385,14 +404,17 @@ template <Scalar S>
 void Body<S>::updateVelocity(const Vector<S>& gravity, S damping, S dt) {
   if (!isDynamic()) return;
   const char* reason = cannotStep();
-  if (reason != nullptr) fail<Fault::IllegalBody>(reason);
-  require<Fault::IllegalBody>(within(dt, kMaxTimeStep<S>), kBadTimeStep);
-  require<Fault::IllegalBody>(within(gravity, kMaxAcceleration<S>) && damping >= S(0) && damping <= S(1),
-                              kBadVelocity);
+  require<Fault::IllegalBody>(reason == nullptr, "Body::updateVelocity: the body's ", reason);
+  requireWithin(dt, kMaxTimeStep<S>, "Body::updateVelocity: dt is ", " s");
+  requireWithin(gravity, kMaxAcceleration<S>, "Body::updateVelocity: gravity is ", " m/s^2");
+  require<Fault::IllegalBody>(damping >= S(0) && damping <= S(1), "Body::updateVelocity: damping is ",
+                              damping, ", allowed are 0 to 1");
   const Motion motion = accelerated(gravity, damping, dt);
-  require<Fault::IllegalBody>(stepping_ != 0 || within(motion.velocity, kMaxSpeed<S>), kBadVelocity);
-  require<Fault::IllegalBody>(stepping_ != 0 || within(motion.angularVelocity, kMaxAngularSpeed<S>),
-                              kBadAngularVelocity);
+  if (stepping_ == 0) {
+    requireWithin(motion.velocity, kMaxSpeed<S>, "Body::updateVelocity: it leads to ", " m/s");
+    requireWithin(motion.angularVelocity, kMaxAngularSpeed<S>, "Body::updateVelocity: it leads to ",
+                  " rad/s");
+  }
 
   held_ |= holdVelocity(motion);
   force_ = {};

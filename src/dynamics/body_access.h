@@ -14,10 +14,9 @@ struct BodyAccess {
   using Motion = typename Body<S>::Motion;
   using WithinStep = typename Body<S>::WithinStep;
 
-  static std::uint32_t owner(const Body<S>& body) { return body.owner_; }
-  static void attach(Body<S>& body, BodyId id, std::uint32_t owner) {
+  static void attach(Body<S>& body, BodyId id, S worldExtent) {
     body.id_ = id;
-    body.owner_ = owner;
+    body.extent_ = worldExtent;
   }
   /// Why the body cannot be stepped, or nullptr.
   static const char* cannotStep(const Body<S>& body) { return body.cannotStep(); }

@@ -44,7 +44,7 @@ Shape<S> circleShape(BodyId body, S radius, const Vector<S>& offset) {
 template <Scalar S>
 void CircleShape<S>::assign(Shape<S>& shape, S radius, const Vector<S>& offset) {
   const Vector<S> points[] = {offset};
-  requireSupported<S>(points, radius);
+  requireSupported<S>(points, radius, "a circle");
   shape.setGeometry(ShapeType::circle, points, radius, circleMassInfo(shape.mass(), radius, offset));
 }
 

@@ -54,29 +54,49 @@ template <Scalar S>
 std::vector<Vector<S>> transformed(std::span<const Vector<S>> points, const Transform<S>& transform) {
   const S limit(2 * kMaxExtent);
   for (const S& x : {transform.a, transform.b, transform.c, transform.d, transform.tx, transform.ty}) {
-    require<Fault::ValueOutOfRange>(isFinite(x));
+    require<Fault::ValueOutOfRange>(isFinite(x), "a polygon: a factor of its transform is ", x,
+                                    ", which is not finite");
   }
   std::vector<Vector<S>> result;
   result.reserve(points.size());
   for (const Vector<S>& v : points) {
-    require<Fault::ValueOutOfRange>(finite(v));
+    require<Fault::ValueOutOfRange>(finite(v), "a polygon: a point is ", v, ", which is not finite");
     // Scaled: a factor of the transform may carry a point beyond the range of S.
     const auto mapped = [&](S x, S y, S t) {
       return toScaled(x) * toScaled(v.x) + toScaled(y) * toScaled(v.y) + toScaled(t);
     };
     const Scaled<S> x = mapped(transform.a, transform.c, transform.tx);
     const Scaled<S> y = mapped(transform.b, transform.d, transform.ty);
-    require<Fault::SizeOutOfRange>(abs(x) <= toScaled(limit) && abs(y) <= toScaled(limit));
+    require<Fault::SizeOutOfRange>(abs(x) <= toScaled(limit) && abs(y) <= toScaled(limit),
+                                   "a polygon: its transform carries the point ", v, " farther than ", limit,
+                                   " m along an axis, the most allowed");
     result.push_back(transformPoint(transform, v));
   }
   return result;
+}
+
+/// @throws DegenerateShape, which says where
+template <Scalar S>
+void requireConvex(std::span<const Vector<S>> vertices) {
+  if (strictlyConvex(vertices)) return;
+  const std::vector<Vector<S>> turned(vertices.rbegin(), vertices.rend());
+  require<Fault::DegenerateShape>(!strictlyConvex(std::span<const Vector<S>>(turned)),
+                                  "a polygon: its corners go clockwise, counter-clockwise is wanted");
+  const std::size_t count = vertices.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector<S>&before = vertices[(i + count - 1) % count], &after = vertices[(i + 1) % count];
+    require<Fault::DegenerateShape>(sign(exactCross(vertices[i] - before, after - vertices[i])) > 0,
+                                    "a polygon: it does not turn left at corner ", i, ", ", vertices[i],
+                                    "; it must go counter-clockwise and be convex, without a straight angle");
+  }
+  fail<Fault::DegenerateShape>("a polygon: its ", count, " corners go round more than once");
 }
 
 }  // namespace
 
 template <Scalar S>
 Scaled<S> scaledMomentForPoly(Scaled<S> mass, std::span<const Vector<S>> vertices, const Vector<S>& offset) {
-  require<Fault::IndexOutOfBounds>(!vertices.empty());
+  require<Fault::IndexOutOfBounds>(!vertices.empty(), "scaledMomentForPoly: there are 0 vertices");
   const PolyIntegrals<S> sums = integrate(vertices);
   if (sign(sums.doubleArea) == 0) {
     const LoopIndices ends = loopIndices(vertices);
@@ -129,7 +149,7 @@ S areaForPoly(std::span<const Vector<S>> vertices, S radius) {
 
 template <Scalar S>
 Vector<S> centroidForPoly(std::span<const Vector<S>> vertices) {
-  require<Fault::IndexOutOfBounds>(!vertices.empty());
+  require<Fault::IndexOutOfBounds>(!vertices.empty(), "centroidForPoly: there are 0 vertices");
   const PolyIntegrals<S> sums = integrate(vertices);
   if (sign(sums.doubleArea) == 0) {
     const LoopIndices ends = loopIndices(vertices);
@@ -163,7 +183,10 @@ Shape<S> polyShapeRaw(BodyId body, std::span<const Vector<S>> vertices, S radius
 
 template <Scalar S>
 Shape<S> boxShape(BodyId body, S width, S height, S radius) {
-  require<Fault::ValueOutOfRange>(isFinite(width) && isFinite(height));
+  require<Fault::ValueOutOfRange>(isFinite(width) && isFinite(height), "a box: width is ", width,
+                                  " m and height ", height, " m, not both finite");
+  require<Fault::NegativeHalfDimensions>(width >= S(0) && height >= S(0), "a box: width is ", width,
+                                         " m and height ", height, " m, allowed are 0 and above");
   const S half = ratio<S>(1, 2);
   return boxShape(body, BB<S>::forExtents(Vector<S>(), width * half, height * half), radius);
 }
@@ -172,24 +195,30 @@ template <Scalar S>
 Shape<S> boxShape(BodyId body, const BB<S>& box, S radius) {
   const Vector<S> corners[] = {
       {box.right, box.bottom}, {box.right, box.top}, {box.left, box.top}, {box.left, box.bottom}};
-  for (const Vector<S>& v : corners) require<Fault::ValueOutOfRange>(finite(v));
-  require<Fault::NegativeHalfDimensions>(box.left <= box.right && box.bottom <= box.top);
+  for (const Vector<S>& v : corners)
+    require<Fault::ValueOutOfRange>(finite(v), "a box: a corner is ", v, ", which is not finite");
+  require<Fault::NegativeHalfDimensions>(box.left <= box.right && box.bottom <= box.top,
+                                         "a box: it goes from ", corners[3], " to ", corners[1],
+                                         ", left to right and up is allowed");
   return polyShapeRaw<S>(body, corners, radius);
 }
 
 template <Scalar S>
 void PolyShape<S>::assign(Shape<S>& shape, std::span<const Vector<S>> vertices, S radius) {
-  require<Fault::DegenerateShape>(vertices.size() >= 3);
-  require<Fault::TooManyVertices>(vertices.size() <= kMaxPolyVertices);
-  requireSupported(vertices, radius);
-  require<Fault::DegenerateShape>(strictlyConvex(vertices));
+  require<Fault::DegenerateShape>(vertices.size() >= 3, "a polygon: there are ", vertices.size(),
+                                  " corners, allowed are 3 to ", kMaxPolyVertices);
+  require<Fault::TooManyVertices>(vertices.size() <= kMaxPolyVertices, "a polygon: there are ",
+                                  vertices.size(), " corners, allowed are 3 to ", kMaxPolyVertices);
+  requireSupported(vertices, radius, "a polygon");
+  requireConvex(vertices);
   shape.setGeometry(ShapeType::poly, vertices, radius, polyMassInfo(shape.mass(), vertices, radius));
 }
 
 template <Scalar S>
 void PolyShape<S>::assignHull(Shape<S>& shape, std::span<const Vector<S>> points,
                               const Transform<S>& transform, S radius) {
-  require<Fault::DegenerateShape>(points.size() >= 3);
+  require<Fault::DegenerateShape>(points.size() >= 3, "a polygon: there are ", points.size(),
+                                  " points, at least 3 are wanted");
   // The points are moved first: a mirroring transform turns the direction round.
   std::vector<Vector<S>> hull = transformed(points, transform);
   const int count = convexHull<S>(std::span<const Vector<S>>(hull), std::span(hull));

@@ -51,8 +51,8 @@ template <Scalar S>
 void SegmentShape<S>::setGeometry(Shape<S>& shape, const Vector<S>& a, const Vector<S>& b, S radius,
                                   const Vector<S>& tangentA, const Vector<S>& tangentB) {
   const Vector<S> points[] = {a, b, tangentA, tangentB};
-  requireSupported<S>(std::span(points).first(2), radius);
-  require<Fault::DegenerateShape>(a != b);
+  requireSupported<S>(std::span(points).first(2), radius, "a segment");
+  require<Fault::DegenerateShape>(a != b, "a segment: both ends are ", a, ", it has no length");
   shape.setGeometry(ShapeType::segment, points, radius, segmentMassInfo(shape.mass(), a, b, radius));
 }
 
@@ -64,7 +64,7 @@ void SegmentShape<S>::assign(Shape<S>& shape, const Vector<S>& a, const Vector<S
 template <Scalar S>
 void SegmentShape<S>::setNeighbors(const Vector<S>& previous, const Vector<S>& next) {
   const Vector<S> points[] = {previous, next};
-  requireSupported<S>(points, S(0));
+  requireSupported<S>(points, S(0), "a neighbour of a segment");
   setGeometry(shape_, this->a(), this->b(), this->radius(), previous - this->a(), next - this->b());
 }
 

@@ -37,10 +37,7 @@ void VertexList<S>::swap(VertexList& other) noexcept {
 
 template <Scalar S>
 void Shape<S>::setMass(S mass) {
-  require<Fault::NaNMass>(!(mass != mass));
-  require<Fault::NegativeMass>(mass >= S(0));
-  require<Fault::InfiniteMass>(isFinite(mass));
-  require<Fault::MassOutOfRange>(massSupported(mass));
+  requireMass(mass, "Shape::setMass");
   massInfo_.mass = mass;
 }
 
@@ -52,10 +49,13 @@ S Shape<S>::density() const {
 
 template <Scalar S>
 void Shape<S>::setDensity(S density) {
-  require<Fault::ValueOutOfRange>(isFinite(density));
-  require<Fault::NegativeMass>(density >= S(0));
+  require<Fault::ValueOutOfRange>(isFinite(density), "Shape::setDensity: density is ", density,
+                                  " kg/m^2, which is not finite");
+  require<Fault::NegativeMass>(density >= S(0), "Shape::setDensity: density is ", density,
+                               " kg/m^2, allowed are 0 and above");
   const Scaled<S> mass = toScaled(density) * massInfo_.area;
-  require<Fault::MassOutOfRange>(mass <= toScaled(kMaxMass<S>));
+  require<Fault::MassOutOfRange>(mass <= toScaled(kMaxMass<S>), "Shape::setDensity: density is ", density,
+                                 " kg/m^2 and the mass more than ", kMaxMass<S>, " kg, the most allowed");
   setMass(toScalar<S>(mass));
 }
 
@@ -71,21 +71,21 @@ S Shape<S>::area() const {
 
 template <Scalar S>
 void Shape<S>::setElasticity(S elasticity) {
-  require<Fault::ValueOutOfRange>(isFinite(elasticity) && elasticity <= S(kMaxMaterial));
-  require<Fault::NegativeElasticity>(elasticity >= S(0));
+  requireMaterial<Fault::NegativeElasticity>(elasticity, "Shape::setElasticity: elasticity is ");
   elasticity_ = elasticity;
 }
 
 template <Scalar S>
 void Shape<S>::setFriction(S friction) {
-  require<Fault::ValueOutOfRange>(isFinite(friction) && friction <= S(kMaxMaterial));
-  require<Fault::NegativeFriction>(friction >= S(0));
+  requireMaterial<Fault::NegativeFriction>(friction, "Shape::setFriction: friction is ");
   friction_ = friction;
 }
 
 template <Scalar S>
 void Shape<S>::setSurfaceVelocity(const Vector<S>& velocity) {
-  require<Fault::ValueOutOfRange>(within(velocity, S(kMaxMaterial)));
+  require<Fault::ValueOutOfRange>(within(velocity, S(kMaxMaterial)),
+                                  "Shape::setSurfaceVelocity: velocity is ", velocity,
+                                  " m/s, allowed are up to ", kMaxMaterial, " m/s along each axis");
   surfaceVelocity_ = velocity;
 }
 
@@ -127,9 +127,9 @@ bool Shape<S>::sameGeometry(const Shape& other) const {
 template <Scalar S>
 bool Shape<S>::same(const Shape& other) const {
   return sameGeometry(other) && elasticity_ == other.elasticity_ && friction_ == other.friction_ &&
-         surfaceVelocity_ == other.surfaceVelocity_ && userData_ == other.userData_ &&
-         owner_ == other.owner_ && body_ == other.body_ && id_ == other.id_ &&
-         collisionType_ == other.collisionType_ && filter_ == other.filter_ && sensor_ == other.sensor_;
+         surfaceVelocity_ == other.surfaceVelocity_ && userData_ == other.userData_ && body_ == other.body_ &&
+         id_ == other.id_ && id_.space == other.id_.space && collisionType_ == other.collisionType_ &&
+         filter_ == other.filter_ && sensor_ == other.sensor_;
 }
 
 template <Scalar S>

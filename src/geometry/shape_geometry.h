@@ -34,12 +34,19 @@ bool sizeSupported(std::span<const Vector<S>> points, S radius) {
 
 /// What all shapes require of their points and radius.
 /// @throws ValueOutOfRange, NegativeRadius, SizeOutOfRange
+/// @param what  for the error: "a circle"
 template <Scalar S>
-void requireSupported(std::span<const Vector<S>> points, S radius) {
-  for (const Vector<S>& v : points) require<Fault::ValueOutOfRange>(finite(v));
-  require<Fault::ValueOutOfRange>(isFinite(radius));
-  require<Fault::NegativeRadius>(radius >= S(0));
-  require<Fault::SizeOutOfRange>(sizeSupported(points, radius));
+void requireSupported(std::span<const Vector<S>> points, S radius, const char* what) {
+  for (const Vector<S>& v : points)
+    require<Fault::ValueOutOfRange>(finite(v), what, ": a point is ", v, ", which is not finite");
+  require<Fault::ValueOutOfRange>(isFinite(radius), what, ": radius is ", radius, " m, which is not finite");
+  require<Fault::NegativeRadius>(radius >= S(0), what, ": radius is ", radius, " m, allowed are 0 and above");
+  if (sizeSupported(points, radius)) return;
+  for (const Vector<S>& v : points)
+    require<Fault::SizeOutOfRange>(sizeSupported(std::span(&v, 1), S(0)), what, ": a point is ", v,
+                                   " m, allowed are up to ", kMaxExtent, " m from the origin of the body");
+  fail<Fault::SizeOutOfRange>(what, ": with a radius of ", radius, " m it reaches farther than ", kMaxExtent,
+                              " m, the most allowed, from the origin of the body");
 }
 
 /// Whether the points go counter-clockwise round a convex polygon with no straight angle. Every vertex is
@@ -62,6 +69,26 @@ bool strictlyConvex(std::span<const Vector<S>> points) {
 template <Scalar S>
 bool massSupported(S mass) {
   return mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>);
+}
+/// @throws NaNMass, NegativeMass, InfiniteMass, MassOutOfRange
+template <Scalar S>
+void requireMass(S mass, const char* asked) {
+  constexpr const char* is = ": mass is ";
+  require<Fault::NaNMass>(!(mass != mass), asked, is, mass);
+  require<Fault::NegativeMass>(mass >= S(0), asked, is, mass, " kg, allowed are 0 and ", kMinMass<S>, " to ",
+                               kMaxMass<S>, " kg");
+  require<Fault::InfiniteMass>(isFinite(mass), asked, is, mass, "; a body that nothing moves is static");
+  require<Fault::MassOutOfRange>(massSupported(mass), asked, is, mass, " kg, allowed are 0 and ", kMinMass<S>,
+                                 " to ", kMaxMass<S>, " kg");
+}
+/// What elasticity and friction require, of a shape or of a contact.
+/// @param is  "Shape::setFriction: friction is "
+/// @throws ValueOutOfRange, the fault F for what is negative
+template <Fault F, Scalar S>
+void requireMaterial(S value, const char* is) {
+  require<Fault::ValueOutOfRange>(isFinite(value) && value <= S(kMaxMaterial), is, value,
+                                  ", allowed are 0 to ", kMaxMaterial);
+  require<F>(value >= S(0), is, value, ", allowed are 0 to ", kMaxMaterial);
 }
 
 template <Scalar S>

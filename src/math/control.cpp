@@ -88,7 +88,7 @@ int reduce(Points<S> points, const Vector<S>& a, const Vector<S>& pivot, const V
 
 template <Scalar S>
 LoopIndices loopIndices(std::span<const Vector<S>> points) {
-  require<Fault::IndexOutOfBounds>(!points.empty());
+  require<Fault::IndexOutOfBounds>(!points.empty(), "loopIndices: there are 0 points");
   LoopIndices found;
   Vector<S> least = points[0], most = points[0];
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -106,9 +106,14 @@ LoopIndices loopIndices(std::span<const Vector<S>> points) {
 
 template <Scalar S>
 int convexHull(std::span<const Vector<S>> points, std::span<Vector<S>> result, int* first, S tolerance) {
-  require<Fault::IndexOutOfBounds>(!points.empty() && result.size() >= points.size());
-  require<Fault::ValueOutOfRange>(tolerance >= S(0) && tolerance <= kMaxWorldExtent<S>);
-  for (const Vector<S>& v : points) require<Fault::ValueOutOfRange>(within(v, kMaxWorldExtent<S>));
+  require<Fault::IndexOutOfBounds>(!points.empty() && result.size() >= points.size(), "convexHull: of ",
+                                   points.size(), " points, with room for ", result.size());
+  require<Fault::ValueOutOfRange>(tolerance >= S(0) && tolerance <= kMaxWorldExtent<S>,
+                                  "convexHull: tolerance is ", tolerance, " m, allowed are 0 to ",
+                                  kMaxWorldExtent<S>, " m");
+  for (const Vector<S>& v : points)
+    require<Fault::ValueOutOfRange>(within(v, kMaxWorldExtent<S>), "convexHull: a point is ", v,
+                                    " m, allowed are up to ", kMaxWorldExtent<S>, " m along each axis");
 
   const LoopIndices ends = loopIndices<S>(points);
   if (result.data() != points.data()) {

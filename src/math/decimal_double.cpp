@@ -304,27 +304,66 @@ Digits shortestDigits(std::uint64_t bits) {
   }
 }
 
-void appendNumber(std::string& text, int number) {
+/// The longest text of a double: sign, "0.", six zeros, 17 digits; or 17 digits, point, "e-308".
+struct ShortText {
+  std::array<char, 32> characters{};
+  std::size_t length = 0;
+
+  void append(char c) { characters[length++] = c; }
+  void append(std::string_view text) {
+    for (const char c : text) append(c);
+  }
+  void append(int count, char c) {
+    for (int i = 0; i < count; ++i) append(c);
+  }
+  std::string_view view() const { return {characters.data(), length}; }
+};
+
+void appendNumber(ShortText& text, int number) {
   if (number >= 10) appendNumber(text, number / 10);
-  text += static_cast<char>('0' + number % 10);
+  text.append(static_cast<char>('0' + number % 10));
 }
 
-void appendDigits(std::string& text, const Digits& number) {
+void appendDigits(ShortText& text, const Digits& number) {
   const std::string_view digits(number.digits.data(), static_cast<std::size_t>(number.count));
   const int exponent = number.exponent;
   if (exponent < -7 || exponent >= 21) {
-    text += digits.front();
-    if (digits.size() > 1) text.append(1, '.').append(digits.substr(1));
-    text += exponent < 0 ? "e-" : "e";
+    text.append(digits.front());
+    if (digits.size() > 1) text.append('.');
+    text.append(digits.substr(1));
+    text.append(exponent < 0 ? "e-" : "e");
     appendNumber(text, std::abs(exponent));
   } else if (exponent < 0) {
-    text.append("0.").append(static_cast<std::size_t>(-exponent - 1), '0').append(digits);
+    text.append("0.");
+    text.append(-exponent - 1, '0');
+    text.append(digits);
   } else if (number.count <= exponent + 1) {
-    text.append(digits).append(static_cast<std::size_t>(exponent + 1 - number.count), '0');
+    text.append(digits);
+    text.append(exponent + 1 - number.count, '0');
   } else {
     const auto whole = static_cast<std::size_t>(exponent + 1);
-    text.append(digits.substr(0, whole)).append(1, '.').append(digits.substr(whole));
+    text.append(digits.substr(0, whole));
+    text.append('.');
+    text.append(digits.substr(whole));
   }
+}
+
+ShortText textOf(double x) {
+  const auto bits = __builtin_bit_cast(std::uint64_t, x);
+  const std::uint64_t magnitude = bits << 1 >> 1;
+  constexpr std::uint64_t kInfinity = std::uint64_t{2047} << 52;
+  ShortText text;
+  if (bits != magnitude && magnitude <= kInfinity) text.append('-');
+  if (magnitude > kInfinity) {
+    text.append("nan");
+  } else if (magnitude == kInfinity) {
+    text.append("inf");
+  } else if (magnitude == 0) {
+    text.append('0');
+  } else {
+    appendDigits(text, shortestDigits(magnitude));
+  }
+  return text;
 }
 
 }  // namespace
@@ -340,15 +379,18 @@ DecimalStatus parseDecimal(std::string_view text, double& out) {
   return DecimalStatus::ok;
 }
 
-std::string formatDecimal(double x) {
-  const auto bits = __builtin_bit_cast(std::uint64_t, x);
-  const std::uint64_t magnitude = bits << 1 >> 1;
-  if (magnitude > std::uint64_t{2047} << 52) return "nan";
-  std::string text = bits == magnitude ? "" : "-";
-  if (magnitude == std::uint64_t{2047} << 52) return text += "inf";
-  if (magnitude == 0) return text += '0';
-  appendDigits(text, shortestDigits(magnitude));
-  return text;
+std::string formatDecimal(double x) { return std::string(textOf(x).view()); }
+
+/// For the texts of errors: the same, as far as there is room.
+/// @return where it ended
+char* writeDecimal(char* to, const char* end, double x) noexcept;
+char* writeDecimal(char* to, const char* end, double x) noexcept {
+  const ShortText text = textOf(x);
+  for (const char c : text.view()) {
+    if (to == end) break;
+    *to++ = c;
+  }
+  return to;
 }
 
 }  // namespace samestep

@@ -101,7 +101,7 @@ class WorldReader {
     return check_.flawOf(id, body);
   }
   const char* accept(ShapeId id, Shape<S>& shape) {
-    shape.attach(id, 0);
+    shape.attach(id);
     return check_.flawOf(id, shape);
   }
   const char* accept(Pair<S>& pair) {

@@ -13,10 +13,14 @@ namespace samestep {
 
 template <Scalar S>
 void Objects<S>::checkNew(const Context& world, const Body<S>& body) {
-  require<Fault::DuplicateBody>(!body.id().valid() || BodyAccess<S>::owner(body) != world.wiring.serial);
-  require<Fault::AttachedBody>(!body.id().valid());
-  require<Fault::IllegalBody>(within(body.worldCenter(), world.state.settings.worldExtent),
-                              "Body's position is invalid.");
+  require<Fault::DuplicateBody>(!body.id().valid() || body.id().space != world.state.bodies.space(),
+                                "Space::add: the body is in this Space already, as ", body.id(),
+                                "; Body::detached is a free copy");
+  require<Fault::AttachedBody>(!body.id().valid(), "Space::add: the body is in another Space, as ", body.id(),
+                               "; Body::detached is a free copy");
+  const S extent = world.state.settings.worldExtent;
+  require<Fault::IllegalBody>(within(body.worldCenter(), extent), "Space::add: the centre of mass is at ",
+                              body.worldCenter(), " m, allowed are -", extent, " to ", extent, " m");
 }
 
 template <Scalar S>
@@ -24,7 +28,8 @@ void Objects<S>::insert(Context& world, const Body<S>& body, BodyId id) {
   world.derived.ensure(world.state);
   world.derived.growBodies(max(world.state.bodies.slots(), id.index + 1));
   world.state.bodies.store(id, body);
-  BodyAccess<S>::attach(world.state.bodies.valueAt(id.index), id, world.wiring.serial);
+  BodyAccess<S>::attach(world.state.bodies.valueAt(id.index), world.state.bodies.idAt(id.index),
+                        world.state.settings.worldExtent);
 }
 
 template <Scalar S>
@@ -54,10 +59,11 @@ void Objects<S>::eraseWithShapes(Context& world, BodyId id) {
 
 template <Scalar S>
 void Objects<S>::setType(Context& world, BodyId id, BodyType type) {
-  Body<S>& kept = world.state.bodies.template at<Fault::BodyNotFound>(id);
+  Body<S>& kept = world.state.bodies.template at<Fault::BodyNotFound>(id, "Space::setType");
   world.derived.touch(id.index);
   require<Fault::MainStaticBody>(id != world.state.staticBody || type == BodyType::staticBody,
-                                 "The designated static body of a space stays static.");
+                                 "Space::setType: body ", id,
+                                 " is the static body of the Space, which stays static");
   if (type == kept.type()) return;
   Body<S> changed = kept.detached();
   changed.setType(type);
@@ -70,13 +76,13 @@ void Objects<S>::setType(Context& world, BodyId id, BodyType type) {
     if (mass.mass > S(0)) changed.setMassProperties(mass);
   }
 
-  BodyAccess<S>::attach(changed, kept.id(), BodyAccess<S>::owner(kept));
+  BodyAccess<S>::attach(changed, kept.id(), world.state.settings.worldExtent);
   kept = changed;
 }
 
 template <Scalar S>
 void Objects<S>::accumulateMass(Context& world, BodyId id) {
-  require<Fault::BodyNotFound>(world.state.bodies.contains(id));
+  world.state.bodies.template requireAlive<Fault::BodyNotFound>(id, "Space::accumulateMassFromShapes");
   world.derived.touch(id.index);
   takeMass(world, id, kNone, nullptr);
 }
@@ -84,8 +90,9 @@ void Objects<S>::accumulateMass(Context& world, BodyId id) {
 template <Scalar S>
 void Objects<S>::checkShape(const Shape<S>& shape, const Body<S>& body) {
   const S limit = body.type() == BodyType::staticBody ? S(kMaxExtent) : S(kMaxDynamicExtent);
-  require<Fault::SizeOutOfRange>(shape.extent() <= limit,
-                                 "A shape of a body that moves reaches farther than 2^8 m from its origin.");
+  require<Fault::SizeOutOfRange>(shape.extent() <= limit, "a shape reaches ", shape.extent(),
+                                 " m from the origin of its body, allowed are up to ", limit,
+                                 body.type() == BodyType::staticBody ? " m" : " m for a body that moves");
 }
 
 /// What the shapes of a body weigh together, with `by`, unless it is null, in place of the one in the slot
@@ -168,9 +175,13 @@ void Objects<S>::takeMass(Context& world, BodyId id, std::uint32_t replaced, con
 
 template <Scalar S>
 void Objects<S>::insert(Context& world, const Shape<S>& shape, ShapeId id) {
-  require<Fault::DuplicateShape>(!shape.id().valid() || shape.owner() != world.wiring.serial);
-  require<Fault::AttachedShape>(!shape.id().valid());
-  const Body<S>& holder = world.state.bodies.template at<Fault::BodyNotFound>(shape.body());
+  require<Fault::DuplicateShape>(!shape.id().valid() || shape.id().space != world.state.shapes.space(),
+                                 "Space::add: the shape is in this Space already, as ", shape.id(),
+                                 "; Shape::detached is a free copy");
+  require<Fault::AttachedShape>(!shape.id().valid(), "Space::add: the shape is in another Space, as ",
+                                shape.id(), "; Shape::detached is a free copy");
+  const Body<S>& holder =
+      world.state.bodies.template at<Fault::BodyNotFound>(shape.body(), "Space::add: the body of the shape");
   require<Fault::DegenerateShape>(shape.wellFormed());
   checkShape(shape, holder);
   Derived<S>& derived = world.derived;
@@ -178,7 +189,9 @@ void Objects<S>::insert(Context& world, const Shape<S>& shape, ShapeId id) {
   derived.growShapes(max(world.state.shapes.slots(), id.index + 1));
   derived.reserveFor(shape);
   Shape<S> own = shape;
-  own.attach(id, world.wiring.serial);
+  ShapeId named = id;
+  named.space = world.state.shapes.space();
+  own.attach(named);
   world.state.shapes.reserve(id.index);
   const BodyId bodyId = shape.body();
   if (shape.mass() > S(0)) takeMass(world, bodyId, id.index, &shape);
@@ -211,9 +224,9 @@ void Objects<S>::erase(Context& world, ShapeId id) {
 
 template <Scalar S>
 void Objects<S>::replace(Context& world, ShapeId id, const Shape<S>& shape, bool locked) {
-  Shape<S>& kept = world.state.shapes.template at<Fault::ShapeNotFound>(id);
+  Shape<S>& kept = world.state.shapes.template at<Fault::ShapeNotFound>(id, "Space::replace");
   Shape<S> next = shape;
-  next.attach(id, world.wiring.serial);
+  next.attach(kept.id());
   next.setBody(kept.body());
   const std::span<const Vector<S>> before = kept.vertices(), after = next.vertices();
   const bool sameGeometry = next.type() == kept.type() && next.radius() == kept.radius() &&

@@ -6,6 +6,15 @@
 #include "base/require_ieee.h"
 
 namespace samestep {
+namespace {
+
+template <Scalar S>
+void requirePlace(const Vector<S>& place, const char* is) {
+  require<Fault::ValueOutOfRange>(within(place, kMaxWorldExtent<S>), is, place, " m, allowed are up to ",
+                                  kMaxWorldExtent<S>, " m along each axis");
+}
+
+}  // namespace
 
 template <Scalar S>
 template <class Collect>
@@ -22,8 +31,10 @@ void Queries<S>::collectFound(Collect&& collect) {
 template <Scalar S>
 void Queries<S>::point(const Vector<S>& point, S distance, const ShapeFilter& filter,
                        std::vector<PointHit<S>>& hits) {
-  require<Fault::ValueOutOfRange>(within(point, kMaxWorldExtent<S>) && distance >= S(0) &&
-                                  distance <= kMaxWorldExtent<S>);
+  requirePlace(point, "Space::pointQuery: point is ");
+  require<Fault::ValueOutOfRange>(distance >= S(0) && distance <= kMaxWorldExtent<S>,
+                                  "Space::pointQuery: distance is ", distance, " m, allowed are 0 to ",
+                                  kMaxWorldExtent<S>, " m");
   hits.clear();
   parts.derived.refresh(state);
   const BB<S> box = BB<S>::forCircle(point, distance);
@@ -40,9 +51,13 @@ void Queries<S>::point(const Vector<S>& point, S distance, const ShapeFilter& fi
 template <Scalar S>
 void Queries<S>::segment(const Vector<S>& start, const Vector<S>& end, S radius, const ShapeFilter& filter,
                          std::vector<SegmentHit<S>>& hits) {
-  require<Fault::ValueOutOfRange>(within(start, kMaxWorldExtent<S>) && within(end, kMaxWorldExtent<S>) &&
-                                  radius <= kMaxWorldExtent<S>);
-  require<Fault::NegativeRadius>(radius >= S(0));
+  requirePlace(start, "Space::segmentQuery: start is ");
+  requirePlace(end, "Space::segmentQuery: end is ");
+  const char* const is = "Space::segmentQuery: radius is ";
+  require<Fault::ValueOutOfRange>(radius <= kMaxWorldExtent<S>, is, radius, " m, allowed are 0 to ",
+                                  kMaxWorldExtent<S>, " m");
+  require<Fault::NegativeRadius>(radius >= S(0), is, radius, " m, allowed are 0 to ", kMaxWorldExtent<S>,
+                                 " m");
   hits.clear();
   parts.derived.refresh(state);
   collectFound([&](const BBTree<S>& tree, std::vector<IndexKey>& keys) {
@@ -57,9 +72,11 @@ void Queries<S>::segment(const Vector<S>& start, const Vector<S>& end, S radius,
 
 template <Scalar S>
 void Queries<S>::box(const BB<S>& box, const ShapeFilter& filter, std::vector<ShapeId>& hits) {
-  require<Fault::ValueOutOfRange>(within(Vector<S>(box.left, box.bottom), kMaxWorldExtent<S>) &&
-                                  within(Vector<S>(box.right, box.top), kMaxWorldExtent<S>));
-  require<Fault::NegativeHalfDimensions>(box.left <= box.right && box.bottom <= box.top);
+  const Vector<S> low(box.left, box.bottom), high(box.right, box.top);
+  requirePlace(low, "Space::boxQuery: the lower left corner is ");
+  requirePlace(high, "Space::boxQuery: the upper right corner is ");
+  require<Fault::NegativeHalfDimensions>(low.x <= high.x && low.y <= high.y, "Space::boxQuery: from ", low,
+                                         " to ", high, " goes left or down");
   hits.clear();
   parts.derived.refresh(state);
   collectFound([&](const BBTree<S>& tree, std::vector<IndexKey>& keys) { tree.collectIn(box, keys); });

@@ -22,16 +22,29 @@ namespace {
 /// Tells the objects of one Space from those of another; 0 is nobody's. Never part of a result.
 std::uint32_t nextSerial() {
   static std::atomic<std::uint32_t> last{0};
-  return ++last;
+  // After 2^32 of them it begins again.
+  const std::uint32_t next = ++last;
+  return next != 0 ? next : nextSerial();
 }
 
 constexpr const char* kReindexLocked =
     "You cannot manually reindex objects while the space is locked. Wait until the current query or step is "
     "complete.";
 
-template <Scalar S>
-void requireIn(S value, S low, S high) {
-  require<Fault::ValueOutOfRange>(value >= low && value <= high);
+template <class T>
+void requireIn(const char* is, T value, T low, T high, const char* unit = "") {
+  require<Fault::ValueOutOfRange>(value >= low && value <= high, "settings of a Space: ", is, value, unit,
+                                  ", allowed are ", low, " to ", high, unit);
+}
+
+void requireNotMain(BodyId id, BodyId staticBody, const char* asked) {
+  require<Fault::MainStaticBody>(id != staticBody, asked, ": body ", id,
+                                 " is the static body of the Space, which stays");
+}
+
+void requireFunction(CallbackNumber number, bool given, const char* asked) {
+  require<Fault::ValueOutOfRange>(number != 0 && given, asked, number,
+                                  given ? ", allowed are 1 and above" : " comes with a null function");
 }
 
 }  // namespace
@@ -41,7 +54,7 @@ Space<S>::Space() : parts_(nullptr) {
   // No destructor runs where what follows fails.
   auto made = std::make_unique<SpaceParts<S>>();
   parts_ = made.get();
-  parts_->wiring.serial = nextSerial();
+  giveIds(nextSerial());
   parts_->derived.budget = &parts_->wiring.budget;
   state_.staticBody = add(Body<S>::fixedInPlace());
   made.release();
@@ -50,6 +63,13 @@ Space<S>::Space() : parts_(nullptr) {
 template <Scalar S>
 Space<S>::~Space() {
   delete parts_;
+}
+
+template <Scalar S>
+void Space<S>::giveIds(std::uint32_t space) {
+  state_.bodies.setSpace(space);
+  state_.shapes.setSpace(space);
+  state_.staticBody.space = space;
 }
 
 template <Scalar S>
@@ -71,19 +91,28 @@ namespace {
 /// Refuses settings that any setter would refuse.
 template <Scalar S>
 void check(const Settings<S>& s) {
-  require<Fault::InvalidIter>(s.iterations >= 1 && s.iterations <= 1000);
-  require<Fault::InvalidIter>(s.substeps >= 1 && s.substeps <= 100, "Substeps must be from 1 to 100.");
-  require<Fault::ValueOutOfRange>(s.solver <= SolverKind::softStep && s.precision <= ContactPrecision::fast);
-  require<Fault::ValueOutOfRange>(within(s.gravity, kMaxAcceleration<S>));
-  requireIn(s.damping, S(0), S(1));
-  requireIn(s.collisionSlop, S(0), S(256));
-  requireIn(s.collisionBias, S(0), S(1));
-  requireIn(s.contactHertz, S(0), S(1000));
-  requireIn(s.contactDamping, S(0), S(100));
-  requireIn(s.contactPushSpeed, S(0), S(1 << 10));
-  requireIn(s.contactMargin, S(0), S(1));
-  requireIn(s.bounceThreshold, S(0), S(1 << 10));
-  require<Fault::ValueOutOfRange>(s.worldExtent > S(0) && s.worldExtent <= kMaxWorldExtent<S>);
+  require<Fault::InvalidIter>(s.iterations >= 1 && s.iterations <= 1000,
+                              "settings of a Space: iterations are ", s.iterations,
+                              ", allowed are 1 to 1000");
+  require<Fault::InvalidIter>(s.substeps >= 1 && s.substeps <= 100, "settings of a Space: substeps are ",
+                              s.substeps, ", allowed are 1 to 100");
+  requireIn<int>("solver is number ", static_cast<int>(s.solver), 0, static_cast<int>(SolverKind::softStep));
+  requireIn<int>("precision is number ", static_cast<int>(s.precision), 0,
+                 static_cast<int>(ContactPrecision::fast));
+  require<Fault::ValueOutOfRange>(within(s.gravity, kMaxAcceleration<S>), "settings of a Space: gravity is ",
+                                  s.gravity, " m/s^2, allowed are up to ", kMaxAcceleration<S>,
+                                  " m/s^2 along each axis");
+  requireIn("damping is ", s.damping, S(0), S(1));
+  requireIn("collision slop is ", s.collisionSlop, S(0), S(256), " m");
+  requireIn("collision bias is ", s.collisionBias, S(0), S(1));
+  requireIn("contact hertz are ", s.contactHertz, S(0), S(1000));
+  requireIn("contact damping is ", s.contactDamping, S(0), S(100));
+  requireIn("contact push speed is ", s.contactPushSpeed, S(0), S(1 << 10), " m/s");
+  requireIn("contact margin is ", s.contactMargin, S(0), S(1), " m");
+  requireIn("bounce threshold is ", s.bounceThreshold, S(0), S(1 << 10), " m/s");
+  require<Fault::ValueOutOfRange>(s.worldExtent > S(0) && s.worldExtent <= kMaxWorldExtent<S>,
+                                  "settings of a Space: world extent is ", s.worldExtent,
+                                  " m, allowed are above 0 to ", kMaxWorldExtent<S>, " m");
 }
 
 template <Scalar S, class T>
@@ -99,8 +128,13 @@ void Space<S>::setSettings(const Settings<S>& settings) {
   requireUsable();
   check(settings);
   const bool otherSolver = settings.solver != state_.settings.solver;
+  const bool otherExtent = settings.worldExtent != state_.settings.worldExtent;
   const bool otherContacts = otherSolver || settings.contactMargin != state_.settings.contactMargin;
   state_.settings = settings;
+  if (otherExtent) {
+    state_.bodies.each(
+        [&](BodyId id, Body<S>& body) { BodyAccess<S>::attach(body, id, settings.worldExtent); });
+  }
   // What sequential impulses left to push in the next step means nothing to another solver, nor later.
   if (otherSolver) state_.bodies.each([](BodyId, Body<S>& body) { BodyAccess<S>::forgetBias(body); });
   if (!otherContacts) return;
@@ -206,8 +240,10 @@ BodyId Space<S>::add(const Body<S>& body, BodyId id) {
 template <Scalar S>
 BodyId Space<S>::setStaticBody(const Body<S>& body) {
   requireUnlocked();
-  require<Fault::AttachedStaticBody>(firstShape(staticBody()) == ShapeId::kNoIndex);
-  require<Fault::IllegalBody>(body.type() == BodyType::staticBody, "The body is not static.");
+  require<Fault::AttachedStaticBody>(firstShape(staticBody()) == ShapeId::kNoIndex,
+                                     "Space::setStaticBody: the present one, ", staticBody(), ", has shapes");
+  require<Fault::IllegalBody>(body.type() == BodyType::staticBody,
+                              "Space::setStaticBody: the body is not static");
 
   const BodyId before = state_.staticBody;
   state_.staticBody = add(body);
@@ -218,9 +254,10 @@ BodyId Space<S>::setStaticBody(const Body<S>& body) {
 template <Scalar S>
 void Space<S>::remove(BodyId id) {
   requireUnlocked();
-  require<Fault::BodyNotFound>(contains(id));
-  require<Fault::MainStaticBody>(id != state_.staticBody);
-  require<Fault::BodyHasShapes>(firstShape(id) == ShapeId::kNoIndex);
+  state_.bodies.template requireAlive<Fault::BodyNotFound>(id, "Space::remove");
+  requireNotMain(id, state_.staticBody, "Space::remove");
+  require<Fault::BodyHasShapes>(firstShape(id) == ShapeId::kNoIndex, "Space::remove: body ", id,
+                                " has shapes; see Space::removeWithShapes");
 
   StepContext<S> world = contextOf();
   Objects<S>::erase(world, id);
@@ -229,8 +266,8 @@ void Space<S>::remove(BodyId id) {
 template <Scalar S>
 void Space<S>::removeWithShapes(BodyId id) {
   requireUnlocked();
-  require<Fault::BodyNotFound>(contains(id));
-  require<Fault::MainStaticBody>(id != state_.staticBody);
+  state_.bodies.template requireAlive<Fault::BodyNotFound>(id, "Space::removeWithShapes");
+  requireNotMain(id, state_.staticBody, "Space::removeWithShapes");
   LockGuard guard(*this);
   StepContext<S> world = contextOf();
   Objects<S>::eraseWithShapes(world, id);
@@ -240,7 +277,7 @@ void Space<S>::removeWithShapes(BodyId id) {
 template <Scalar S>
 Body<S>& Space<S>::body(BodyId id) {
   requireUsable();
-  Body<S>& found = state_.bodies.template at<Fault::BodyNotFound>(id);
+  Body<S>& found = state_.bodies.template at<Fault::BodyNotFound>(id, "Space::body");
   parts_->derived.touch(id.index);
   return found;
 }
@@ -248,7 +285,7 @@ Body<S>& Space<S>::body(BodyId id) {
 template <Scalar S>
 const Body<S>& Space<S>::body(BodyId id) const {
   requireUsable();
-  return state_.bodies.template at<Fault::BodyNotFound>(id);
+  return state_.bodies.template at<Fault::BodyNotFound>(id, "Space::body");
 }
 
 template <Scalar S>
@@ -281,7 +318,7 @@ ShapeId Space<S>::add(const Shape<S>& shape, ShapeId id) {
 template <Scalar S>
 void Space<S>::remove(ShapeId id) {
   requireUnlocked();
-  require<Fault::ShapeNotFound>(contains(id));
+  state_.shapes.template requireAlive<Fault::ShapeNotFound>(id, "Space::remove");
 
   LockGuard guard(*this);
   StepContext<S> world = contextOf();
@@ -292,7 +329,7 @@ void Space<S>::remove(ShapeId id) {
 template <Scalar S>
 const Shape<S>& Space<S>::shape(ShapeId id) const {
   requireUsable();
-  return state_.shapes.template at<Fault::ShapeNotFound>(id);
+  return state_.shapes.template at<Fault::ShapeNotFound>(id, "Space::shape");
 }
 
 template <Scalar S>
@@ -323,7 +360,7 @@ std::uint32_t Space<S>::nextShape(std::uint32_t index) const {
 template <Scalar S>
 BB<S> Space<S>::boundingBox(ShapeId id) {
   requireUsable();
-  require<Fault::ShapeNotFound>(contains(id));
+  state_.shapes.template requireAlive<Fault::ShapeNotFound>(id, "Space::boundingBox");
   parts_->derived.refresh(state_);
   return parts_->derived.placed[id.index].box;
 }
@@ -339,7 +376,7 @@ template <Scalar S>
 void Space<S>::reindexShape(ShapeId id) {
   requireUsable();
   require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
-  require<Fault::ShapeNotFound>(contains(id));
+  state_.shapes.template requireAlive<Fault::ShapeNotFound>(id, "Space::reindexShape");
   parts_->derived.refresh(state_);
 }
 
@@ -347,7 +384,7 @@ template <Scalar S>
 void Space<S>::reindexShapesForBody(BodyId id) {
   requireUsable();
   require<Fault::SpaceLocked>(locked_ == 0, kReindexLocked);
-  require<Fault::BodyNotFound>(contains(id));
+  state_.bodies.template requireAlive<Fault::BodyNotFound>(id, "Space::reindexShapesForBody");
   parts_->derived.refresh(state_);
 }
 
@@ -363,7 +400,8 @@ void Space<S>::unlock(bool runPostStep) {
 
 template <Scalar S>
 bool Space<S>::addPostStepCallback(PostStepFunc function, std::uint64_t key, void* data) {
-  require<Fault::ValueOutOfRange>(function != nullptr);
+  require<Fault::ValueOutOfRange>(function != nullptr, "Space::addPostStepCallback: key ", key,
+                                  " comes with a null function");
   if (!parts_->postStep.add(function, key, data)) return false;
   if (locked_ == 0 && !parts_->postStep.running()) {
     lock();
@@ -375,7 +413,8 @@ bool Space<S>::addPostStepCallback(PostStepFunc function, std::uint64_t key, voi
 template <Scalar S>
 void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>& handler) {
   require<Fault::SpaceLocked>(locked_ == 0);
-  require<Fault::ValueOutOfRange>(number != 0);
+  require<Fault::ValueOutOfRange>(number != 0,
+                                  "Space::registerHandler: number is 0, allowed are 1 and above");
   Wiring<S>& wiring = parts_->wiring;
   Wiring<S>::set(wiring.handlers, typename Wiring<S>::RegisteredHandler{number, handler});
   wiring.bound.take(state_.handlers, wiring.handlers);
@@ -384,14 +423,14 @@ void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>&
 template <Scalar S>
 void Space<S>::registerPositionFunc(CallbackNumber number, PositionFunc function, void* data) {
   require<Fault::SpaceLocked>(locked_ == 0);
-  require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
+  requireFunction(number, function != nullptr, "Space::registerPositionFunc: number ");
   Wiring<S>::set(parts_->wiring.positionFuncs, {number, function, data});
 }
 
 template <Scalar S>
 void Space<S>::registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data) {
   require<Fault::SpaceLocked>(locked_ == 0);
-  require<Fault::ValueOutOfRange>(number != 0 && function != nullptr);
+  requireFunction(number, function != nullptr, "Space::registerVelocityFunc: number ");
   Wiring<S>::set(parts_->wiring.velocityFuncs, {number, function, data});
 }
 
@@ -399,8 +438,10 @@ namespace {
 
 /// Puts a binding in its place, or in that of one for the same collisions.
 template <Scalar S>
-void bind(StepContext<S> world, const HandlerBinding& binding) {
-  require<Fault::MissingCallback>(world.wiring.has(binding.number));
+void bind(StepContext<S> world, const HandlerBinding& binding, const char* asked) {
+  require<Fault::MissingCallback>(world.wiring.has(binding.number), asked,
+                                  ": no handler is registered under ", binding.number,
+                                  "; see Space::registerHandler");
   auto& all = world.state.handlers;
   makeRoom(all, all.size() + 1);
   world.wiring.bound.reserve(all.size() + 1);
@@ -418,19 +459,21 @@ void bind(StepContext<S> world, const HandlerBinding& binding) {
 template <Scalar S>
 void Space<S>::addCollisionHandler(CollisionType typeA, CollisionType typeB, CallbackNumber number) {
   requireUnlocked();
-  bind(contextOf(), {typeA, typeB, number, HandlerBinding::Kind::pair});
+  bind(contextOf(), {typeA, typeB, number, HandlerBinding::Kind::pair}, "Space::addCollisionHandler");
 }
 
 template <Scalar S>
 void Space<S>::addWildcardHandler(CollisionType type, CallbackNumber number) {
   requireUnlocked();
-  bind(contextOf(), {type, kWildcardCollisionType, number, HandlerBinding::Kind::wildcard});
+  bind(contextOf(), {type, kWildcardCollisionType, number, HandlerBinding::Kind::wildcard},
+       "Space::addWildcardHandler");
 }
 
 template <Scalar S>
 void Space<S>::addDefaultCollisionHandler(CallbackNumber number) {
   requireUnlocked();
-  bind(contextOf(), {kWildcardCollisionType, kWildcardCollisionType, number, HandlerBinding::Kind::fallback});
+  bind(contextOf(), {kWildcardCollisionType, kWildcardCollisionType, number, HandlerBinding::Kind::fallback},
+       "Space::addDefaultCollisionHandler");
 }
 
 template <Scalar S>
@@ -442,7 +485,8 @@ void Space<S>::setStageObserver(StageObserver observer, void* data) {
 template <Scalar S>
 void Space<S>::setMaxPairs(std::uint32_t pairs) {
   require<Fault::SpaceLocked>(locked_ == 0);
-  require<Fault::ValueOutOfRange>(pairs <= kMostPairs);
+  require<Fault::ValueOutOfRange>(pairs <= kMostPairs, "Space::setMaxPairs: pairs are ", pairs,
+                                  ", allowed are 0 to ", kMostPairs);
   parts_->wiring.maxPairs = pairs;
 }
 
@@ -485,7 +529,9 @@ TaskRunner* Space<S>::workers() const {
 template <Scalar S>
 void Space<S>::setKernel(KernelTarget target) {
   require<Fault::SpaceLocked>(locked_ == 0);
-  require<Fault::ValueOutOfRange>(target <= KernelTarget::simd128);
+  require<Fault::ValueOutOfRange>(target <= KernelTarget::simd128, "Space::setKernel: target is number ",
+                                  static_cast<int>(target), ", allowed are 0 to ",
+                                  static_cast<int>(KernelTarget::simd128));
   if (!isAvailable(target)) {
     parts_->wiring.remarks.raise(
         Remark::OtherKernel,
@@ -498,7 +544,8 @@ void Space<S>::setKernel(KernelTarget target) {
 template <Scalar S>
 void Space<S>::forceKernel(KernelTarget target) {
   require<Fault::SpaceLocked>(locked_ == 0);
-  require<Fault::KernelUnavailable>(isAvailable(target));
+  require<Fault::KernelUnavailable>(isAvailable(target), "Space::forceKernel: ", kernelName(target),
+                                    " is not in this build, or not for this processor");
   parts_->wiring.kernel = nextBestKernel(target);
   parts_->step.soft.setKernel(parts_->wiring.kernel);
 }
@@ -530,14 +577,17 @@ template <Scalar S>
 void checkAdoptable(const Wiring<S>& wiring, const WorldState<S>& state) {
   require<Fault::ForeignWorld>(state.bodies.contains(state.staticBody), "Nothing was saved there.");
   for (const HandlerBinding& binding : state.handlers) {
-    require<Fault::MissingCallback>(wiring.has(binding.number));
+    require<Fault::MissingCallback>(wiring.has(binding.number),
+                                    "a world: its handlers need one registered under ", binding.number,
+                                    "; see Space::registerHandler");
   }
   state.bodies.each([&](BodyId, const Body<S>& body) { wiring.requireCallbacks(body); });
 }
 
-/// Gives the objects of a world, whose records have an id and an owner, to a Space.
-struct GiveTo {
-  std::uint32_t serial;
+/// Gives the objects of a world, whose records have an id, to its Space, together with how far it reaches.
+template <Scalar S>
+struct GiveObjects {
+  S worldExtent;
 
   template <class T>
   void operator()(const char*, T&) {}
@@ -547,21 +597,15 @@ struct GiveTo {
   void operator()(const Section&, SlotMap<T, IdType>& objects) {
     objects.each([&](IdType id, T& object) { give(object, id); });
   }
-  template <Scalar S>
-  void give(Body<S>& body, BodyId id) {
-    BodyAccess<S>::attach(body, id, serial);
-  }
-  template <Scalar S>
-  void give(Shape<S>& shape, ShapeId id) {
-    shape.attach(id, serial);
-  }
+  void give(Body<S>& body, BodyId id) { BodyAccess<S>::attach(body, id, worldExtent); }
+  void give(Shape<S>& shape, ShapeId id) { shape.attach(id); }
 };
 
 /// Makes a state that came from elsewhere the Space's own.
 template <Scalar S>
 void takeOver(StepContext<S> world) {
   ++world.wiring.worldsBroughtIn;
-  WorldState<S>::sections(GiveTo{world.wiring.serial}, world.state);
+  WorldState<S>::sections(GiveObjects<S>{world.state.settings.worldExtent}, world.state);
   world.wiring.bound.take(world.state.handlers, world.wiring.handlers);
   world.derived.shapesHashKnown = false;
   world.derived.forget();
@@ -576,40 +620,34 @@ std::uint64_t Space<S>::worldsBroughtIn() const {
 }
 
 template <Scalar S>
-template <class Bring>
-void Space<S>::bringIn(const WorldState<S>& state, Bring&& bring) {
+template <class Take>
+void Space<S>::bringIn(const WorldState<S>& state, const Derived<S>* derived, Take&& take) {
   require<Fault::SpaceLocked>(locked_ == 0);
   checkAdoptable(parts_->wiring, state);
+  const std::uint32_t theirs = state.bodies.space(), space = theirs != 0 ? theirs : state_.bodies.space();
   Change change(leftMidway_);
   parts_->postStep.drop();
-  bring();
+  take();
+  giveIds(space);
+  takeOver(contextOf());
+  if (derived != nullptr) parts_->derived.copyFrom(*derived);
   change.done();
   leftMidway_ = false;
 }
 
 template <Scalar S>
 void Space<S>::restore(const SavedSpace<S>& saved) {
-  bringIn(saved.state_, [&] {
-    state_ = saved.state_;
-    takeOver(contextOf());
-    if (saved.derived_ != nullptr) parts_->derived.copyFrom(*saved.derived_);
-  });
+  bringIn(saved.state_, saved.derived_, [&] { state_ = saved.state_; });
 }
 
 template <Scalar S>
 void Space<S>::adopt(const WorldState<S>& state) {
-  bringIn(state, [&] {
-    state_ = state;
-    takeOver(contextOf());
-  });
+  bringIn(state, nullptr, [&] { state_ = state; });
 }
 
 template <Scalar S>
 void Space<S>::adopt(WorldState<S>&& state) {
-  bringIn(state, [&] {
-    state_ = std::move(state);
-    takeOver(contextOf());
-  });
+  bringIn(state, nullptr, [&] { state_ = std::move(state); });
 }
 
 template <Scalar S>
@@ -644,9 +682,11 @@ void Space<S>::visitArbiters(const BodyId* of, void (*visit)(Arbiter<S>&, void*)
 template <Scalar S>
 void Space<S>::filterArbiters(BodyId body, ShapeId shape) {
   requireUnlocked();
-  require<Fault::BodyNotFound>(contains(body));
-  require<Fault::ShapeNotFound>(!shape.valid() ||
-                                (contains(shape) && state_.shapes.valueAt(shape.index).body() == body));
+  state_.bodies.template requireAlive<Fault::BodyNotFound>(body, "Space::filterArbiters");
+  if (shape.valid())
+    state_.shapes.template requireAlive<Fault::ShapeNotFound>(shape, "Space::filterArbiters");
+  require<Fault::ShapeNotFound>(!shape.valid() || state_.shapes.valueAt(shape.index).body() == body,
+                                "Space::filterArbiters: shape ", shape, " is not one of body ", body);
   LockGuard guard(*this);
   StepContext<S> world = contextOf();
   Change change(leftMidway_);
@@ -716,7 +756,8 @@ void Space<S>::step(S dt) {
   const std::size_t waiting = parts_->postStep.size();
   if (!parts_->step.run(context)) {
     parts_->postStep.dropFrom(waiting);
-    fail<Fault::TooManyPairs>();
+    fail<Fault::TooManyPairs>("Space::step: more shapes are near each other than the ",
+                              parts_->wiring.maxPairs, " pairs allowed; see Space::setMaxPairs");
   }
   guard.finish();
 }

@@ -70,7 +70,9 @@ void Step<S>::tellResults(StepContext<S>& step) {
 template <Scalar S>
 void Step<S>::check(const StepContext<S>& step) {
   requireSoundArithmetic<S>();
-  require<Fault::ValueOutOfRange>(step.dt > S(0) && step.dt <= kMaxTimeStep<S>);
+  require<Fault::ValueOutOfRange>(step.dt > S(0) && step.dt <= kMaxTimeStep<S>, "Space::step: dt is ",
+                                  step.dt, " s, allowed are 0, which does nothing, to ", kMaxTimeStep<S>,
+                                  " s");
   Integrate<S>::check(step);
 }
 

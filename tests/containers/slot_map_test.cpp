@@ -29,7 +29,7 @@ TEST(SlotMapTest, IdsCountUpAndNameTheirValues) {
 
   EXPECT_EQ(a, (BodyId{0, 1}));
   EXPECT_EQ(b, (BodyId{1, 1}));
-  EXPECT_EQ(map.at<Fault::BodyNotFound>(a), 10);
+  EXPECT_EQ(map.at<Fault::BodyNotFound>(a, "a test"), 10);
   EXPECT_EQ(*map.find(b), 11);
   EXPECT_EQ(map.size(), 2u);
 }
@@ -45,7 +45,7 @@ TEST(SlotMapTest, AnErasedIdNamesNothingEvenWhenItsSlotIsUsedAgain) {
 
   EXPECT_EQ(fresh, (BodyId{0, 3}));
   EXPECT_FALSE(map.contains(old));
-  EXPECT_THROW(map.at<Fault::BodyNotFound>(old), BodyNotFound);
+  EXPECT_THROW(map.at<Fault::BodyNotFound>(old, "a test"), BodyNotFound);
   EXPECT_EQ(map.find(old), nullptr);
   EXPECT_FALSE(map.erase(old));
   EXPECT_EQ(map.size(), 1u);
@@ -54,8 +54,8 @@ TEST(SlotMapTest, AnErasedIdNamesNothingEvenWhenItsSlotIsUsedAgain) {
 TEST(SlotMapTest, ForeignIdsThrowTheChosenFault) {
   const Map map;
 
-  EXPECT_THROW(map.at<Fault::BodyNotFound>(BodyId{}), BodyNotFound);
-  EXPECT_THROW(map.at<Fault::ShapeNotFound>(BodyId{5, 1}), ShapeNotFound);
+  EXPECT_THROW(map.at<Fault::BodyNotFound>(BodyId{}, "a test"), BodyNotFound);
+  EXPECT_THROW(map.at<Fault::ShapeNotFound>(BodyId{5, 1}, "a test"), ShapeNotFound);
   EXPECT_FALSE(map.contains(BodyId{0, 0}));
 }
 
@@ -88,7 +88,7 @@ TEST(SlotMapTest, AGivenIdNamesItsValueAndLeavesFreeSlotsBelow) {
 
   EXPECT_EQ(map.slots(), 4u);
   EXPECT_EQ(map.size(), 1u);
-  EXPECT_EQ(map.at<Fault::BodyNotFound>({3, 5}), 42);
+  EXPECT_EQ(map.at<Fault::BodyNotFound>({3, 5}, "a test"), 42);
   EXPECT_EQ(map.insert(1), (BodyId{0, 1}));
   map.insertAt({2, 1}, 2);
   EXPECT_EQ(map.insert(3), (BodyId{1, 1}));
@@ -243,7 +243,7 @@ TEST(SlotMapTest, AgreesWithAPlainMapUnderRandomOperations) {
       const auto at = model.find(id);
       ASSERT_EQ(map.contains(id), at != model.end());
       if (at != model.end()) {
-        ASSERT_EQ(map.at<Fault::BodyNotFound>(id), at->second);
+        ASSERT_EQ(map.at<Fault::BodyNotFound>(id, "a test"), at->second);
       }
     }
   }

@@ -33,7 +33,7 @@ TYPED_TEST(ShapeTest, NewShapeHasNoMassNoSurfaceAndMeetsEverything) {
   const Shape<S> shape = TestFixture::box();
   EXPECT_EQ(shape.body(), (BodyId{3, 1}));
   EXPECT_FALSE(shape.id().valid());
-  EXPECT_EQ(shape.owner(), 0u);
+  EXPECT_EQ(shape.id().space, 0u);
   EXPECT_EQ(shape.mass(), S(0));
   EXPECT_EQ(shape.elasticity(), S(0));
   EXPECT_EQ(shape.friction(), S(0));
@@ -139,9 +139,9 @@ TEST(ShapeFilterTest, GroupsCategoriesAndMasksDecideBothWays) {
 TYPED_TEST(ShapeTest, AttachedShapeCarriesItsIdAndDetachedDropsIt) {
   using S = TypeParam;
   Shape<S> shape = TestFixture::box();
-  shape.attach(ShapeId{4, 2}, 77);
+  shape.attach(ShapeId{4, 2, 77});
   EXPECT_EQ(shape.id(), (ShapeId{4, 2}));
-  EXPECT_EQ(shape.owner(), 77u);
+  EXPECT_EQ(shape.id().space, 77u);
   EXPECT_EQ(shape.detached(), TestFixture::box());
 }
 

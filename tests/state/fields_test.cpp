@@ -54,16 +54,16 @@ TYPED_TEST(FieldsTest, RecordsOfMovingThingsAreTriviallyCopyable) {
 TYPED_TEST(FieldsTest, FieldsAccountForEveryByte) {
   using S = TypeParam;
   constexpr std::size_t kDerived = sizeof(Vector<S>) + 2 * sizeof(Scaled<S>) +
-                                   sizeof(S);             // Rotation, inverse mass, moment, moment per mass.
-  constexpr std::size_t kBelonging = sizeof(BodyId) + 4;  // Id and owner.
+                                   sizeof(S);  // Rotation, inverse mass, moment, moment per mass.
+  constexpr std::size_t kBelonging = sizeof(BodyId) + sizeof(S);  // Id and how far it may be set.
   constexpr std::size_t kWithinStep = 2;
   EXPECT_EQ(leavesOf(Body<S>()).bytes() + kDerived + kBelonging + kWithinStep, sizeof(Body<S>));
-  constexpr std::size_t kIdAndOwner = 16;
+  constexpr std::size_t kIdAndSpace = 16;
   constexpr std::size_t kShapeFiller = 5;
   constexpr std::size_t kPlaces = sizeof(VertexList<S>) - VertexList<S>::kFew * sizeof(Vector<S>);
-  EXPECT_EQ(leavesOf(boxShape(BodyId{1, 1}, S(2), S(3))).bytes() + kIdAndOwner + kShapeFiller + kPlaces,
+  EXPECT_EQ(leavesOf(boxShape(BodyId{1, 1}, S(2), S(3))).bytes() + kIdAndSpace + kShapeFiller + kPlaces,
             sizeof(Shape<S>));
-  EXPECT_EQ(leavesOf(this->fullPolygon()).bytes() + kIdAndOwner + kShapeFiller + kPlaces,
+  EXPECT_EQ(leavesOf(this->fullPolygon()).bytes() + kIdAndSpace + kShapeFiller + kPlaces,
             sizeof(Shape<S>) + Shape<S>::kBytesOutside);
   constexpr std::size_t kTotals = 2 * sizeof(S), kContactFiller = 4;
   EXPECT_EQ(leavesOf(Contact<S>()).bytes() + kTotals + kContactFiller, sizeof(Contact<S>));

@@ -49,7 +49,7 @@ template <Scalar S>
 Spawn<S> underGivenIds(Spawn<S> spawn, BodyId body, ShapeId shape) {
   spawn.id = body;
   spawn.body.setPosition({S(-6), S(5)});
-  spawn.shapes[0].attach(shape, 0);
+  spawn.shapes[0].attach(shape);
   return spawn;
 }
 

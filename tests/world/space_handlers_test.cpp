@@ -93,6 +93,13 @@ class HandlersTest : public ::testing::Test {
     world_.step(kTick<S>);
     return log_;
   }
+  BodyId bodyNamed(std::uint64_t name) {
+    BodyId found;
+    world_.eachShape([&](const Shape<S>& shape) {
+      if (shape.userData() == name) found = shape.body();
+    });
+    return found;
+  }
   void moveTo(ShapeId shape, S x) {
     world_.body(bodyOf(world_, shape)).setPosition({x, S(0)});
     world_.body(bodyOf(world_, shape)).setVelocity({});
@@ -593,6 +600,116 @@ TYPED_TEST(HandlersTest, AHandlerMayAskTheWildcards) {
                                         "w2.preSolve(20,10)", "w2.postSolve(20,10)", "w1.postSolve(10,20)"));
   this->moveTo(b, S(10));
   EXPECT_THAT(this->step(), ElementsAre("w2.separate(20,10)", "w1.separate(10,20)"));
+}
+
+TYPED_TEST(HandlersTest, AHandlerForOneTypeAndAnyOtherIsCalledInItsOrder) {
+  using S = TypeParam;
+  this->bindPair("of2", kWildcardCollisionType, 2);
+  this->disc(S(0), 5, 10);
+  this->disc(S(1), 2, 20);
+  this->disc(S(20), 2, 30);
+  this->disc(S(21), 6, 40);
+  this->disc(S(40), kWildcardCollisionType, 50);
+  this->disc(S(41), 2, 60);
+  this->disc(S(60), 5, 70);
+  this->disc(S(61), 6, 80);
+  EXPECT_THAT(this->step(),
+              ElementsAre("of2.begin(10,20)", "of2.preSolve(10,20)", "of2.begin(40,30)",
+                          "of2.preSolve(40,30)", "of2.begin(50,60)", "of2.preSolve(50,60)",
+                          "of2.postSolve(10,20)", "of2.postSolve(40,30)", "of2.postSolve(50,60)"));
+}
+
+TYPED_TEST(HandlersTest, TheHandlerThatNamesMoreOfTheTypesIsCalled) {
+  using S = TypeParam;
+  this->bindDefault("all");
+  this->bindWildcard("w1", 1);
+  this->disc(S(0), 1, 10);
+  this->disc(S(1), 2, 20);
+  const auto begun = [&] {
+    const std::vector<std::string> calls = this->step();
+    for (const BodyId body : {this->bodyNamed(10), this->bodyNamed(20)}) this->world_.filterArbiters(body);
+    return calls.front();
+  };
+  EXPECT_EQ(begun(), "all.begin(10,20)");
+  this->bindPair("of2", kWildcardCollisionType, 2);
+  EXPECT_EQ(begun(), "of2.begin(10,20)");
+  this->bindPair("of1", kWildcardCollisionType, 1);
+  EXPECT_EQ(begun(), "of1.begin(20,10)");
+  this->bindPair("from1", 1, kWildcardCollisionType);
+  EXPECT_EQ(begun(), "from1.begin(10,20)");
+  this->bindPair("turned", 2, 1);
+  EXPECT_EQ(begun(), "turned.begin(20,10)");
+  this->bindPair("both", 1, 2);
+  EXPECT_EQ(begun(), "both.begin(10,20)");
+}
+
+TYPED_TEST(HandlersTest, AHandlerForShapesWithoutATypeIsForThemAlone) {
+  using S = TypeParam;
+  this->bindPair("none", kWildcardCollisionType, kWildcardCollisionType);
+  this->disc(S(0), kWildcardCollisionType, 10);
+  this->disc(S(1), kWildcardCollisionType, 20);
+  this->disc(S(20), kWildcardCollisionType, 30);
+  this->disc(S(21), 5, 40);
+  EXPECT_THAT(this->step(),
+              ElementsAre("none.begin(10,20)", "none.preSolve(10,20)", "none.postSolve(10,20)"));
+}
+
+TYPED_TEST(HandlersTest, WhoIsToldFollowsFromTheTypesOfThatMoment) {
+  using S = TypeParam;
+  this->bindPair("old", 1, 2);
+  this->bindPair("new", 1, 3);
+  this->disc(S(0), 1, 10);
+  const ShapeId b = this->disc(S(1), 2, 20);
+  EXPECT_THAT(this->step(), ElementsAre("old.begin(10,20)", "old.preSolve(10,20)", "old.postSolve(10,20)"));
+  this->world_.change(b, [](Shape<S>& shape) { shape.setCollisionType(3); });
+  EXPECT_THAT(this->step(), ElementsAre("new.preSolve(10,20)", "new.postSolve(10,20)"));
+  this->moveTo(b, S(10));
+  EXPECT_THAT(this->step(), ElementsAre("new.separate(10,20)"));
+
+  this->moveTo(b, S(1));
+  EXPECT_THAT(this->step(), ElementsAre("new.begin(10,20)", "new.preSolve(10,20)", "new.postSolve(10,20)"));
+  this->moveTo(b, S(10));
+  this->world_.change(b, [](Shape<S>& shape) { shape.setCollisionType(2); });
+  EXPECT_THAT(this->step(), ElementsAre("old.separate(10,20)"));
+}
+
+// A sensor made in contact goes on touching: nothing ends and nothing begins, but it pushes no more.
+TYPED_TEST(HandlersTest, ASensorMadeOrUnmadeInContactGoesOnTouching) {
+  using S = TypeParam;
+  for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {
+    this->world_.setSolver(solver);
+    this->bindPair("h", 1, 2);
+    const ShapeId a = this->disc(S(0), 1, 10);
+    const ShapeId b = this->disc(S(1), 2, 20);
+    const auto setSensor = [&](bool sensor) {
+      this->world_.change(b, [&](Shape<S>& shape) { shape.setSensor(sensor); });
+    };
+    EXPECT_THAT(this->step(), ElementsAre("h.begin(10,20)", "h.preSolve(10,20)", "h.postSolve(10,20)"));
+    setSensor(true);
+    EXPECT_THAT(this->step(), ElementsAre("h.preSolve(10,20)"));
+    setSensor(false);
+    EXPECT_THAT(this->step(), ElementsAre("h.preSolve(10,20)", "h.postSolve(10,20)"));
+    setSensor(true);
+    this->moveTo(b, S(10));
+    EXPECT_THAT(this->step(), ElementsAre("h.separate(10,20)"));
+    for (const ShapeId shape : {a, b}) this->world_.removeWithShapes(bodyOf(this->world_, shape));
+  }
+}
+
+// What overlaps newly is told with the next step that takes time.
+TYPED_TEST(HandlersTest, AStepOfNoTimeDoesNothing) {
+  using S = TypeParam;
+  this->bindPair("h", 1, 2);
+  this->disc(S(0), 1, 10);
+  this->disc(S(1), 2, 20);
+  const std::uint64_t before = this->world_.hash();
+  this->world_.step(S(0));
+  EXPECT_TRUE(this->log_.empty());
+  EXPECT_EQ(this->world_.hash(), before);
+  EXPECT_EQ(this->world_.stamp(), 0u);
+  EXPECT_EQ(this->world_.currentTimeStep(), S(0));
+  EXPECT_EQ(this->step().front(), "h.begin(10,20)");
+  EXPECT_EQ(this->world_.currentTimeStep(), kTick<S>);
 }
 
 TYPED_TEST(HandlersTest, BindingAgainReplaces) {

@@ -98,16 +98,21 @@ class Scene {
   /// for bodies that are gone are left out.
   const Command<S>* nextCommand();
   /// Applies the commands that are due, then makes a step.
-  /// @throws what a command or Space::step throws
+  /// @throws SceneError for a command that cannot be done, with its place, and for a step, with its number
   void step();
+  /// For who applies commands and makes steps by other means: what of the scene an error is to be told with,
+  /// that of the last command or, after the last, of the step.
+  SceneError refused(const Error& error) const;
 
  private:
   /// A command whose body is still a name.
   struct Event {
-    Event(std::uint64_t tickIn, std::uint32_t nameIn, Command<S>&& commandIn)
-        : tick(tickIn), name(nameIn), command(std::move(commandIn)) {}
+    Event(std::uint64_t tickIn, std::uint32_t nameIn, std::uint32_t lineIn, Command<S>&& commandIn)
+        : tick(tickIn), name(nameIn), line(lineIn), command(std::move(commandIn)) {}
     std::uint64_t tick;
     std::uint32_t name;
+    std::uint32_t line;    // Of the scene's file, or of that of its inputs.
+    bool isInput = false;  // Whether it stands there.
     Command<S> command;
   };
   template <Scalar T>
@@ -118,6 +123,9 @@ class Scene {
   std::vector<Event> events_;
   std::vector<BodyId> names_;
   std::uint64_t next_ = 0;
+  bool commandsDone_ = true;  // Whether all that are due before the coming step were given out.
+  std::string file_;
+  std::string inputsFile_;
 };
 
 #define SAMESTEP_EACH_SCALAR extern template class Scene<S>;

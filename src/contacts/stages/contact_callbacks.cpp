@@ -36,14 +36,28 @@ void ContactCallbacks<S>::payForCall(Context& context, std::uint32_t& called) {
 template <Scalar S>
 const CollisionHandler<S>* ContactCallbacks<S>::handlerFor(const Context& context, Arbiter<S>& arbiter) {
   using Kind = HandlerBinding::Kind;
+  constexpr CollisionType kAny = kWildcardCollisionType;
+  // For two types in this order, or in the other.
+  const auto findPair = [&](CollisionType first, CollisionType second, bool turned) {
+    const auto* handler = boundHandler(context, Kind::pair, first, second);
+    if (handler == nullptr) {
+      handler = boundHandler(context, Kind::pair, second, first);
+      turned = !turned;
+    }
+    if (handler != nullptr && turned) arbiter.swapped_ = !arbiter.swapped_;
+    return handler;
+  };
   const CollisionType a = arbiter.shapeDataA().collisionType();
   const CollisionType b = arbiter.shapeDataB().collisionType();
-  if (const auto* handler = boundHandler(context, Kind::pair, a, b)) return handler;
-  if (const auto* handler = boundHandler(context, Kind::pair, b, a)) {
-    arbiter.swapped_ = !arbiter.swapped_;
-    return handler;
+  if (const auto* handler = findPair(a, b, false)) return handler;
+  // The type of the lower id goes before that of the higher.
+  if (a != kAny) {
+    if (const auto* handler = findPair(a, kAny, false)) return handler;
   }
-  return boundHandler(context, Kind::fallback, kWildcardCollisionType, kWildcardCollisionType);
+  if (b != kAny) {
+    if (const auto* handler = findPair(b, kAny, true)) return handler;
+  }
+  return boundHandler(context, Kind::fallback, kAny, kAny);
 }
 
 template <Scalar S>

@@ -13,8 +13,7 @@ void Integrate<S>::check(const StepContext<S>& step) {
     if (!bodies.aliveAt(i)) continue;
     const Body<S>& body = bodies.valueAt(i);
     const char* reason = BodyAccess<S>::cannotStep(body);
-    if (reason != nullptr) [[unlikely]]
-      fail<Fault::IllegalBody>(reason);
+    require<Fault::IllegalBody>(reason == nullptr, "Space::step: body ", body.id(), ": its ", reason);
     if (body.positionFunc() != 0 || body.velocityFunc() != 0) [[unlikely]]
       step.wiring.requireCallbacks(body);
   }
