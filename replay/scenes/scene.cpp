@@ -47,6 +47,7 @@ const Command<S>* Scene<S>::nextCommand() {
 
 template <Scalar S>
 SceneError Scene<S>::refused(const Error& error) const {
+  if (commandsDone_ && error.fault() == Fault::IllegalBody && unsteppable_) return *unsteppable_;
   if (commandsDone_) return {file_, 0, "", "step " + std::to_string(tick() + 1) + ": " + error.what()};
   const Event& event = events_[next_ - 1];
   return {event.isInput ? inputsFile_ : file_, event.line, "",

@@ -210,11 +210,11 @@ void SceneBuilder<S>::refuseSecondMass(const Cursor& at, const Spawn<S>& body) {
   }
 }
 
-/// Refuses a body that no step could move.
+/// Notes the place of the first body that no step could move: see Scene::refused.
 template <Scalar S>
-void SceneBuilder<S>::requireSteppable(const Cursor& at, const Space<S>& space, BodyId id) {
-  const char* reason = BodyAccess<S>::cannotStep(space.body(id));
-  if (reason != nullptr) at.fail(reason);
+void SceneBuilder<S>::noteUnsteppable(const Cursor& at, const Body<S>& body) {
+  const char* reason = BodyAccess<S>::cannotStep(body);
+  if (reason != nullptr && !scene_.unsteppable_) scene_.unsteppable_ = at.error(reason);
 }
 
 template <Scalar S>
@@ -310,7 +310,7 @@ void SceneBuilder<S>::addNamed(const Cursor& at, const std::string& name, const 
     at.fail(tooMany("shapes", kMaxSceneShapes));
   }
   const BodyId id = at.guard([&] { return addBody(body); });
-  requireSteppable(at, scene_.space_, id);
+  noteUnsteppable(at, scene_.space_.body(id));
   if (!name.empty()) scene_.names_[newName(at, name)] = id;
 }
 

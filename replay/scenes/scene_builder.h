@@ -53,7 +53,7 @@ class SceneBuilder {
   void readEvent(const Cursor& at, std::uint32_t spawned);
 
   static void refuseSecondMass(const Cursor& at, const Spawn<S>& body);
-  static void requireSteppable(const Cursor& at, const Space<S>& space, BodyId id);
+  void noteUnsteppable(const Cursor& at, const Body<S>& body);
 
   BodyId addBody(const Spawn<S>& body);
   void addNamed(const Cursor& at, const std::string& name, const Spawn<S>& body);

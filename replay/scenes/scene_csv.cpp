@@ -141,7 +141,7 @@ void SceneBuilder<S>::readCsvBodies(const Cursor& at) {
       if (first && space.body(body).type() != BodyType::staticBody)
         space.body(body).setVelocity(row.vector<S>(5));
       const char* reason = BodyAccess<S>::cannotStep(space.body(body));
-      if (reason != nullptr) row.fail("", reason);
+      if (reason != nullptr && !scene_.unsteppable_) scene_.unsteppable_ = SceneError(file, line, "", reason);
     });
   });
   if (header) refuseHeader(file, 1);

@@ -21,7 +21,9 @@ const char* reasonOf(DecimalStatus status) {
   return "not a number";
 }
 
-void Cursor::fail(const std::string& reason) const { throw SceneError(*file_, node_->line, path_, reason); }
+SceneError Cursor::error(const std::string& reason) const { return {*file_, node_->line, path_, reason}; }
+
+void Cursor::fail(const std::string& reason) const { throw error(reason); }
 
 void Cursor::expect(json::Kind kind, const char* what) const {
   if (node_->kind != kind) fail(std::string(what) + " is wanted here");

@@ -24,6 +24,8 @@ class Cursor {
       : node_(&node), file_(&file), path_(std::move(path)) {}
 
   [[noreturn]] void fail(const std::string& reason) const;
+  /// What fail throws.
+  SceneError error(const std::string& reason) const;
   std::uint32_t line() const { return node_->line; }
 
   /// Refuses what is no object, and keys other than these.

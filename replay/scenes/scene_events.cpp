@@ -120,7 +120,7 @@ void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
     // Tried out, so that what cannot come in is told before the scene runs.
     Space<S> trial;
     trial.setWorldExtent(scene_.space_.worldExtent());
-    requireSteppable(body, trial, body.guard([&] { return applyCommand<S>(trial, made); }));
+    noteUnsteppable(body, trial.body(body.guard([&] { return applyCommand<S>(trial, made); })));
     addEvent(at, tick, spawned, made);
     return;
   }

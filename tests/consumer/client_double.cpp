@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A game's own arithmetic on double, in the shapes that compilers like to fuse: turning a vector, a product
 // of complex numbers, sums of products, in loops and alone.
-struct Pair {
-  double x;
-  double y;
-};
+#include "client_double.h"
 
 Pair turned(Pair v, Pair by) { return {v.x * by.x - v.y * by.y, v.x * by.y + v.y * by.x}; }
 

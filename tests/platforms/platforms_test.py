@@ -120,15 +120,16 @@ class Proofs(unittest.TestCase):
     def test_the_native_snapshot_is_played_on_and_every_snapshot_and_fingerprint_compared(self):
         hashes = {("arena.fixed", tick): f"{tick:016x}" for tick in range(1, 5)}
         hashes[("stack.fixed", 4)] = "a" * 16
-        native = {("arena.fixed@saved", 2): "b" * 16, ("arena.fixed", 1): "c" * 16}
+        native = {("arena.fixed@saved", 2): "b" * 16, ("arena.fixed", 1): "c" * 16, ("game.double", 0): "e" * 16}
         with tempfile.TemporaryDirectory() as golden:
             (Path(golden) / "fingerprint.txt").write_text("fixed dddddddddddddddd\n")
             more = platforms.proofs.expected(hashes, native, 4, Path(golden))
         self.assertEqual(more, {("arena.fixed@saved", 2): "b" * 16, ("arena.fixed@2", 3): f"{3:016x}",
-                                ("arena.fixed@2", 4): f"{4:016x}", ("fingerprint.fixed", 0): "d" * 16})
+                                ("arena.fixed@2", 4): f"{4:016x}", ("fingerprint.fixed", 0): "d" * 16,
+                                ("game.double", 0): "e" * 16})
 
     def test_lines_belong_to_a_scalar_and_only_some_names_are_files(self):
-        names = ["arena.fixed", "arena.fixed@saved", "arena.fixed@300", "fingerprint.fixed"]
+        names = ["arena.fixed", "arena.fixed@saved", "arena.fixed@300", "fingerprint.fixed", "game.fixed"]
         self.assertEqual(platforms.proofs.files(names), ["arena.fixed", "arena.fixed@300"])
         self.assertEqual({platforms.proofs.recording_of(name).rsplit(".", 1)[1] for name in names}, {"fixed"})
 

@@ -1,4 +1,5 @@
-"""What scripts/platforms proves beside the hashes of recordings: the fingerprint, and that snapshots travel.
+"""What scripts/platforms proves beside the hashes of recordings: the fingerprint, that a game's own double code
+gives the same under the flags of the library, and that snapshots travel.
 
 Every platform saves a snapshot halfway through every recording: its bytes must be those that the native build
 saved, so that what it saved can be loaded natively. And of some scenes it loads the native snapshot and plays on.
@@ -24,7 +25,7 @@ def recording_of(name):
 
 def files(names):
     """Of the names of lines, those that are files."""
-    return [name for name in names if not name.endswith("@saved") and not name.startswith("fingerprint.")]
+    return [name for name in names if not name.endswith("@saved") and not name.startswith(("fingerprint.", "game."))]
 
 
 def expected(hashes, natively_saved, ticks, golden):
@@ -32,7 +33,8 @@ def expected(hashes, natively_saved, ticks, golden):
 
     natively_saved: what the native runner printed when it wrote the snapshots.
     """
-    more = {key: value for key, value in natively_saved.items() if key[0].endswith("@saved")}
+    more = {key: value for key, value in natively_saved.items()
+            if key[0].endswith("@saved") or key[0].startswith("game.")}
     for (name, tick), value in hashes.items():
         if name.rsplit(".", 1)[0] in SCENES and tick > halfway(ticks):
             more[(f"{name}@{halfway(ticks)}", tick)] = value

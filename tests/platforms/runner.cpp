@@ -2,6 +2,7 @@
 // What scripts/platforms runs on each platform: runner [OPTION]... FILE...
 // Prints a line about the platform, then lines of a name, a tick and a hash. The name is
 //   fingerprint.SCALAR: at tick 0, the fingerprint;
+//   game.double: at tick 0, a hash of what a game's own double code computes;
 //   RECORDING: for each tick of a recording, the hash of the world after it, computed here, or with
 //   --recorded that which the recording carries; RECORDING@saved: at the tick of --save-at, the hash of the
 //   bytes of a snapshot; RECORDING@TICK, a file with the snapshot of that tick, as --write leaves it: the
@@ -23,6 +24,8 @@
 #include <samestep/snapshot.h>
 #include <samestep/version.h>
 #include <samestep/workers.h>
+
+#include "../consumer/client_double.h"
 
 namespace samestep {
 namespace {
@@ -148,6 +151,44 @@ void printFingerprints() {
 #endif
 }
 
+#ifndef SAMESTEP_FIXED_ONLY
+/// What a game computes with double by itself, under the flags that the library gives it: vectors turned on
+/// and on, and sums of products, from numbers that differ in every bit.
+std::uint64_t hashOfGame() {
+  constexpr int kCount = 64;
+  std::uint64_t random = 1;
+  const auto next = [&] {
+    random = random * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<double>(static_cast<std::int64_t>(random >> 12)) / 4503599627370496.0 - 0.5;
+  };
+  Pair vectors[kCount];
+  double a[kCount], b[kCount], out[4];
+  for (int i = 0; i < kCount; ++i) {
+    vectors[i] = {next(), next()};
+    a[i] = next();
+    b[i] = next();
+  }
+  std::vector<std::uint8_t> bytes;
+  const auto keep = [&](double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (int i = 0; i < 8; ++i) bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * i)));
+  };
+  for (int round = 0; round < 100; ++round) {
+    turnAll(vectors, kCount, turned({0.96, 0.28}, vectors[round % kCount]));
+    axpy(a, b, a[round % kCount], kCount);
+    alternate(out, a, b, a + 8);
+    keep(sum(a, b, kCount));
+    for (const double value : out) keep(value);
+    for (int i = 0; i < kCount; ++i) a[i] = next();
+    for (Pair& vector : vectors) {
+      keep(vector.x);
+      vector = {vector.x + next(), vector.y + next()};
+    }
+  }
+  return hashOfBytes(bytes);
+}
+#endif
+
 void describePlatform() {
   const std::string_view name = compiler();
   std::printf("platform: %d %s %.*s\n", static_cast<int>(8 * sizeof(void*)),
@@ -164,6 +205,9 @@ int main(int argumentCount, char** arguments) {
   samestep::Options options;
   samestep::describePlatform();
   samestep::printFingerprints();
+#ifndef SAMESTEP_FIXED_ONLY
+  samestep::printHash("game.double", 0, samestep::hashOfGame());
+#endif
   for (int i = 1; i < argumentCount; ++i) {
     const std::string_view argument = arguments[i];
     if (argument == "--recorded") {

@@ -273,7 +273,7 @@ TYPED_TEST(SceneTest, AnErrorNamesFileLinePathAndReason) {
   const std::string said = complaint<TypeParam>(text);
 
   EXPECT_THAT(said, HasSubstr("test.json:6: /bodies/1/moment: "));
-  EXPECT_THAT(said, HasSubstr("moment is negative"));
+  EXPECT_THAT(said, HasSubstr("Body::setMoment: moment is -4 kg m^2"));
 }
 
 TYPED_TEST(SceneTest, ALineIsCountedRightWhereANumberEndsIt) {
@@ -306,7 +306,7 @@ TYPED_TEST(SceneTest, MalformedScenesAreRefusedWithTheirReason) {
   EXPECT_THAT(said("\"bodies\": [{\"position\": [1e7, 0]}]"), HasSubstr("/bodies/0/position: "));
   EXPECT_THAT(said("\"bodies\": [{\"shapes\": [{\"friction\": 1}]}]"), HasSubstr("/bodies/0/shapes/0: "));
   EXPECT_THAT(said("\"bodies\": [{\"shapes\": [{\"circle\": -1}]}]"),
-              HasSubstr("Radius should be nonnegative"));
+              HasSubstr("a circle: radius is -1 m, allowed are 0 and above"));
   EXPECT_THAT(said("\"bodies\": [{\"shapes\": [{\"circle\": 1, \"box\": [1, 1]}]}]"),
               HasSubstr("one thing only"));
   EXPECT_THAT(said("\"bodies\": [{\"shapes\": [{\"polygon\": [[0,0],[1,1],[2,2]]}]}]"),
@@ -327,6 +327,61 @@ TYPED_TEST(SceneTest, MalformedScenesAreRefusedWithTheirReason) {
               HasSubstr("no body of this name"));
   EXPECT_THAT(said("\"events\": [{\"tick\": 1, \"do\": \"explode\", \"body\": \"x\"}]"),
               HasSubstr("no command"));
+}
+
+TYPED_TEST(SceneTest, AMassBesideAShapeWithMassIsRefused) {
+  const auto said = [](const char* body) {
+    return complaint<TypeParam>(std::string("{\"samestep\": 1, \"bodies\": [\n") + body + "]}");
+  };
+  EXPECT_THAT(said(R"({"mass": 5, "shapes": [{"circle": 1}, {"circle": 1, "mass": 2}]})"),
+              HasSubstr("test.json:2: /bodies/0/mass: means nothing to a body of which a shape has a mass"));
+  EXPECT_THAT(said(R"({"moment": 5, "shapes": [{"circle": 1, "density": 2}]})"),
+              HasSubstr("test.json:2: /bodies/0/moment: means nothing"));
+  EXPECT_EQ(said(R"({"mass": 5, "moment": 5, "shapes": [{"circle": 1, "mass": 0}]})"), "");
+}
+
+TYPED_TEST(SceneTest, ASceneThatCannotBeSteppedIsRefusedWithItsPlace) {
+  const auto said = [](const char* rest) -> std::string {
+    Scene<TypeParam> scene(
+        SceneSource::fromText(std::string("{\"samestep\": 1,\n") + rest + "}", "test.json"));
+    try {
+      for (int i = 0; i < 9; ++i) scene.step();
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(said("\"bodies\": [\n{\"name\": \"a\", \"shapes\": [{\"circle\": 1}]}]"),
+            "test.json:3: /bodies/0: mass is 0: set it, or give the body a shape with a mass");
+  EXPECT_THAT(said(R"("bodies": [{"mass": 2}])"), HasSubstr("test.json:2: /bodies/0: moment is 0"));
+  EXPECT_EQ(said(R"("bodies": [{"rotates": false, "mass": 2}, {"type": "static"}, {"type": "kinematic"}])"),
+            "");
+  EXPECT_THAT(said("\"events\": [\n{\"tick\": 5, \"do\": \"spawn\",\n\"body\": {\"mass\": 1}}]"),
+              HasSubstr("test.json:4: /events/0/body: moment is 0"));
+}
+
+TYPED_TEST(SceneTest, ASpawnThatCannotBeIsRefusedBeforeTheSceneRuns) {
+  EXPECT_THAT(complaint<TypeParam>(R"({"samestep": 1, "settings": {"worldExtent": 10},
+      "events": [{"tick": 5, "do": "spawn", "body": {"position": [20, 0], "mass": 1, "moment": 1}}]})"),
+              HasSubstr("test.json:2: /events/0/body: Space::add: the centre of mass is at (20, 0) m"));
+}
+
+TYPED_TEST(SceneTest, AnEventThatCannotBeDoneIsToldWithItsPlace) {
+  Scene<TypeParam> scene(SceneSource::fromText(R"({"samestep": 1,
+      "bodies": [{"name": "b", "mass": 1, "moment": 1}],
+      "events": [{"tick": 1, "do": "velocity", "body": "b", "value": [1, 0]},
+                 {"tick": 2, "do": "velocity", "body": "b", "value": [2000, 0]}]})",
+                                               "test.json"));
+  scene.step();
+  try {
+    scene.step();
+    ADD_FAILURE();
+  } catch (const SceneError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "test.json:4: \"velocity\" at tick 2: Body::setVelocity: velocity is (2000, 0) m/s, allowed are "
+        "-1024 to 1024 m/s");
+  }
 }
 
 TYPED_TEST(SceneTest, FilesAreLookedForOnDiskUnlessOthersAreGiven) {

@@ -169,5 +169,20 @@ TYPED_TEST(StateHashTest, StagesCanBeCompared) {
   EXPECT_EQ(stagesOf(1).size(), 80u);
 }
 
+#ifndef SAMESTEP_FIXED_ONLY
+// Equal numbers, other bits: a hash tells what will be computed on, and 1 / 0 is not 1 / -0.
+TEST(StateHashOfDoubleTest, ZeroAndMinusZeroAreTwoWorlds) {
+  Space<double> plus, minus;
+  const BodyId id = plus.add(Body<double>(1, 1));
+  minus.add(Body<double>(1, 1));
+  EXPECT_EQ(plus.hash(), minus.hash());
+  minus.body(BodyId::fromBits(id.bits())).setVelocity({-0.0, 0.0});
+  EXPECT_EQ(plus.body(id).velocity(), minus.body(BodyId::fromBits(id.bits())).velocity());
+  EXPECT_NE(plus.hash(), minus.hash());
+  plus.body(id).setVelocity({-0.0, 0.0});
+  EXPECT_EQ(plus.hash(), minus.hash());
+}
+#endif
+
 }  // namespace
 }  // namespace samestep

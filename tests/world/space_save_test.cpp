@@ -189,9 +189,9 @@ TYPED_TEST(SpaceSaveTest, ObjectsOfARestoredWorldBelongToTheSpaceThatRestoredIt)
   other.restore(space.save());
   EXPECT_EQ(other.hash(), space.hash());
   EXPECT_THROW(other.add(other.shape(disc)), DuplicateShape);
-  EXPECT_THROW(space.add(other.shape(disc)), AttachedShape);
+  EXPECT_THROW(space.add(other.shape(disc)), DuplicateShape);
   EXPECT_THROW(other.add(other.body(bodyOf(other, disc))), DuplicateBody);
-  EXPECT_THROW(space.add(other.body(bodyOf(other, disc))), AttachedBody);
+  EXPECT_THROW(space.add(other.body(bodyOf(other, disc))), DuplicateBody);
 }
 
 TYPED_TEST(SpaceSaveTest, RestoreRefusesWhatItHasNoFunctionsFor) {

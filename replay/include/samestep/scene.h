@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -98,10 +99,11 @@ class Scene {
   /// for bodies that are gone are left out.
   const Command<S>* nextCommand();
   /// Applies the commands that are due, then makes a step.
-  /// @throws SceneError for a command that cannot be done, with its place, and for a step, with its number
+  /// @throws SceneError for a command that cannot be done, with its place; for a step that cannot be made,
+  /// with
+  ///         the place of a body that no step can move, else with its number
   void step();
-  /// For who applies commands and makes steps by other means: what of the scene an error is to be told with,
-  /// that of the last command or, after the last, of the step.
+  /// For who applies commands and makes steps by other means: an error of theirs as step would throw it.
   SceneError refused(const Error& error) const;
 
  private:
@@ -126,6 +128,7 @@ class Scene {
   bool commandsDone_ = true;  // Whether all that are due before the coming step were given out.
   std::string file_;
   std::string inputsFile_;
+  std::optional<SceneError> unsteppable_;  // The first body that is so as it stands in the scene.
 };
 
 #define SAMESTEP_EACH_SCALAR extern template class Scene<S>;
