@@ -5,20 +5,10 @@
 #include <samestep/high_water.h>
 
 #include "base/require_ieee.h"
+#include "geometry/shape_geometry.h"
 
 namespace samestep {
 namespace {
-
-template <Scalar S>
-void requireMass(S mass, const char* asked) {
-  constexpr const char* is = ": mass is ";
-  require<Fault::NaNMass>(mass == mass, asked, is, mass);
-  require<Fault::NegativeMass>(mass >= S(0), asked, is, mass, " kg, allowed are 0 and ", kMinMass<S>, " to ",
-                               kMaxMass<S>, " kg");
-  require<Fault::InfiniteMass>(isFinite(mass), asked, is, mass, "; a body that nothing moves is static");
-  require<Fault::MassOutOfRange>(mass == S(0) || (mass >= kMinMass<S> && mass <= kMaxMass<S>), asked, is,
-                                 mass, " kg, allowed are 0 and ", kMinMass<S>, " to ", kMaxMass<S>, " kg");
-}
 
 template <Scalar S>
 void requireMoment(S moment, const char* asked) {
