@@ -214,7 +214,7 @@ using LeftMidway = FaultError<Fault::LeftMidway>;
 /// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.
 class FormatError : public MalformedBytes {
  public:
-  FormatError(std::uint64_t offset, const char* reason) noexcept : FormatError(offset, {reason}) {}
+  FormatError(std::uint64_t offset, const char* reason) noexcept : MalformedBytes(reason), offset_(offset) {}
   FormatError(std::uint64_t offset, std::initializer_list<ErrorPart> reason) noexcept
       : MalformedBytes(reason), offset_(offset) {}
   /// Of the first byte of what is wrong.

@@ -120,7 +120,8 @@ class Shape {
     id_ = id;
     body_.space = id.space;
   }
-  /// The same shape outside of any Space.
+  /// The same shape outside of any Space. Its body is the one it was on: before another Space takes it, it
+  /// needs one of that.
   constexpr Shape detached() const {
     Shape copy = *this;
     copy.id_ = ShapeId();

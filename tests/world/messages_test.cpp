@@ -114,7 +114,7 @@ TYPED_TEST(MessagesTest, ShapesThatAreNoneSayWhatIsWrong) {
               HasSubstr("it does not turn left at corner 2, (1, 1)"));
   EXPECT_THAT(polygon({{S(0), S(0)}, {S(1), S(0)}, {S(2), S(0)}}),
               HasSubstr("it does not turn left at corner 0"));
-  EXPECT_EQ(polygon({{S(0), S(0)}, {S(1), S(0)}}), "a polygon: there are 2 corners, allowed are 3 to 64");
+  EXPECT_EQ(polygon({{S(0), S(0)}, {S(1), S(0)}}), "a polygon: there are 2 corners, allowed are 3 to 32");
   // A star with five points turns left everywhere.
   EXPECT_EQ(polygon({{S(0), S(10)}, {S(-6), S(-8)}, {S(9), S(3)}, {S(-9), S(3)}, {S(6), S(-8)}}),
             "a polygon: its 5 corners go round more than once");

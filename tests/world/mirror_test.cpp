@@ -91,7 +91,7 @@ TYPED_TEST(MirrorTest, CirclesOnCirclesAndSegmentsAreExactMirrorImagesForAThousa
       right.step(kTick<S>);
       left.eachArbiter([&](Arbiter<S>&) { ++contacts; });
       left.eachBody([&](const Body<S>& body) {
-        const Body<S>& image = right.body(body.id());
+        const Body<S>& image = right.body(BodyId::fromBits(body.id().bits()));
         ASSERT_EQ(body.worldCenter().x, -image.worldCenter().x) << "scene " << seed << ", step " << step;
         ASSERT_EQ(body.worldCenter().y, image.worldCenter().y);
         ASSERT_EQ(body.velocity().x, -image.velocity().x);
