@@ -19,7 +19,8 @@ Arena<S>::Arena(std::uint32_t players, std::uint32_t crates) : size_(crates > 32
     space_.add(segmentShape<S>(space_.staticBody(), corners[i], corners[(i + 1) % 4], ratio<S>(1, 2)));
   }
   for (Seat seat = 0; seat < players; ++seat) {
-    players_[seat] = place(space_, {S(seat % 4 * 4 - 6), S(seat / 4 * 4 - 6)});
+    // Anywhere: the same inputs are applied to the Space of a replay.
+    players_[seat] = place(space_, {S(seat % 4 * 4 - 6), S(seat / 4 * 4 - 6)}).anywhere();
     Shape<S> disc = circleShape<S>(players_[seat], ratio<S>(1, 2));
     disc.setMass(S(1));
     disc.setElasticity(ratio<S>(1, 2));

@@ -24,6 +24,9 @@ struct Id {
 
   /// Whether this is some object's id; whether the object still exists only its Space knows.
   constexpr bool valid() const { return index != kNoIndex; }
+  /// The same as anybody's: for who does the same in several Spaces, as a game whose inputs are also applied
+  /// while a recording of it is replayed. The caller answers for it naming the right object.
+  constexpr Id anywhere() const { return fromBits(bits()); }
   /// Slot and generation in one number, for keeping and sending.
   constexpr std::uint64_t bits() const { return std::uint64_t{generation} << 32 | index; }
   /// The id of which bits() were kept. Any Space takes it: the caller answers for it naming the right object.

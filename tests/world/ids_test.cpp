@@ -101,6 +101,7 @@ TYPED_TEST(IdsTest, BitsNameTheSameSlotInEverySpace) {
   EXPECT_TRUE(other.contains(body));
   EXPECT_EQ((BodyId{5, 7}.bits()), (std::uint64_t{7} << 32 | 5u));
   EXPECT_FALSE(BodyId::fromBits(BodyId().bits()).valid());
+  EXPECT_TRUE(space.contains(this->bodyOf(other).anywhere()));
 }
 
 // It is the world whose objects they name, also where another Space goes on with it.
