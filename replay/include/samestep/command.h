@@ -155,7 +155,8 @@ struct Wiring {
   /// Registers functions with a new Space; null for none.
   void (*connect)(Space<S>& space, void* data) = nullptr;
   /// Applies a UserInput; null where no recording of the game has any. It must go by the bytes and the Space
-  /// alone, and either apply all or throw an Error and change nothing.
+  /// alone, and either apply all or throw an Error and change nothing. Each replay has a Space of its own:
+  /// ids that a game keeps beside its Space for this are Id::anywhere.
   void (*applyInput)(Space<S>& space, std::span<const std::uint8_t> bytes, void* data) = nullptr;
   void* data = nullptr;
 };
