@@ -104,8 +104,8 @@ std::uint64_t Derived<S>::bytes() const {
 
 template <Scalar S>
 void Derived<S>::growBodies(std::uint32_t slots) {
-  // Each body is touched once.
-  makeRoom(touched, slots);
+  // Each body is touched once. All have room before any grows.
+  makeRoomForEach(slots, touched, poses, firstShape, lastShape, isTouched);
   poses.resize(slots);
   firstShape.resize(slots, kNone);
   lastShape.resize(slots, kNone);
@@ -114,6 +114,7 @@ void Derived<S>::growBodies(std::uint32_t slots) {
 
 template <Scalar S>
 void Derived<S>::growShapes(std::uint32_t slots) {
+  makeRoomForEach(slots, nextShape, placed, traits, around, planeOffset, planeRoom, geometry);
   nextShape.resize(slots, kNone);
   placed.resize(slots);
   traits.resize(slots);
