@@ -234,7 +234,7 @@ BodyId Space<S>::add(const Body<S>& body, BodyId id) {
   Objects<S>::checkNew(world, body);
   state_.bodies.checkGiven(id);
   Objects<S>::insert(world, body, id);
-  return id;
+  return state_.bodies.idAt(id.index);
 }
 
 template <Scalar S>
@@ -312,7 +312,7 @@ ShapeId Space<S>::add(const Shape<S>& shape, ShapeId id) {
   state_.shapes.checkGiven(id);
   StepContext<S> world = contextOf();
   Objects<S>::insert(world, shape, id);
-  return id;
+  return state_.shapes.idAt(id.index);
 }
 
 template <Scalar S>

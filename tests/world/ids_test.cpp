@@ -70,7 +70,10 @@ TYPED_TEST(IdsTest, WhatASpaceGivesOutIsItsOwn) {
   using S = TypeParam;
   auto &space = this->space_, &other = this->other_;
   const BodyId given = other.add(Body<S>(S(1), S(1)), BodyId{7, 1});
-  static_cast<void>(given);
+  const ShapeId givenShape = other.add(circleShape<S>(given, S(1)), ShapeId{9, 1});
+  other.remove(givenShape);
+  EXPECT_EQ(given.space, other.staticBody().space);
+  EXPECT_EQ(givenShape.space, given.space);
   EXPECT_FALSE(space.contains(other.staticBody()));
   other.eachBody([&](const Body<S>& body) { EXPECT_FALSE(space.contains(body.id())); });
   other.eachShape([&](const Shape<S>& shape) {
