@@ -63,6 +63,7 @@ TYPED_TEST(SpaceRemovalTest, SeparateIsToldOfEachPairOnceByRisingIdsWhileAllIsSt
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     BodyId bar;
     S mass{};
+    bool removing = false;
     bool allThere = true;
   } told;
   Space<S> space;
@@ -70,7 +71,9 @@ TYPED_TEST(SpaceRemovalTest, SeparateIsToldOfEachPairOnceByRisingIdsWhileAllIsSt
   handler.data = &told;
   handler.separate = [](Arbiter<S>& arbiter, Space<S>& world, void* data) {
     Told& to = *static_cast<Told*>(data);
-    EXPECT_TRUE(arbiter.isRemoval());
+    // Corners that just meet at the seams of the bar part when it settles.
+    EXPECT_EQ(arbiter.isRemoval(), to.removing);
+    if (!to.removing) return;
     to.pairs.emplace_back(arbiter.shapeA().index, arbiter.shapeB().index);
     to.allThere = to.allThere && world.contains(arbiter.shapeA()) && world.contains(arbiter.shapeB());
     to.mass = std::as_const(world).body(to.bar).mass();
@@ -85,6 +88,7 @@ TYPED_TEST(SpaceRemovalTest, SeparateIsToldOfEachPairOnceByRisingIdsWhileAllIsSt
   });
   ASSERT_GT(touching.size(), 5u);
 
+  told.removing = true;
   space.removeWithShapes(told.bar);
 
   EXPECT_EQ(told.pairs, touching);
