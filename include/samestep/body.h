@@ -249,6 +249,8 @@ class Body {
   Motion acceleration(const Vector<S>& gravity) const;
   /// Moves the centre of mass within the body, whose material moves on as before.
   void moveCenter(const Vector<S>& center);
+  /// Computes what follows from type, mass and moment.
+  void deriveMass();
   /// Of a body that is not dynamic: its mass is to be summed over its shapes when it becomes so.
   void forgetMass();
   void forgetBias();

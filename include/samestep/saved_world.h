@@ -7,12 +7,13 @@
 
 namespace samestep {
 
-/// What a Space computes from its state and can compute again.
 template <Scalar S>
-struct Derived;
+struct SavedParts;
 
-/// A world kept in memory, by Space::save, with what its Space had computed from it. Reusing one makes saving
-/// free of allocation. One into which a save failed holds nothing.
+/// A world kept in memory, by Space::save: its state, packed, and what its Space had computed from it that
+/// the next step would have to compute again. What a step leaves for callbacks and visits alone (impulses,
+/// and the materials that callbacks set for a step) is not kept. Reusing one makes saving free of allocation. One
+/// into which a save failed holds nothing.
 template <Scalar S>
 class SavedSpace {
  public:
@@ -24,18 +25,15 @@ class SavedSpace {
   ~SavedSpace();
 
   /// The step it was saved after.
-  std::uint64_t stamp() const { return state_.stamp; }
-  const WorldState<S>& state() const { return state_; }
-  /// How much memory it copies, bytes.
+  std::uint64_t stamp() const;
+  /// The state, unpacked; an empty one if nothing was saved.
+  WorldState<S> state() const;
+  /// The bytes that it keeps.
   std::uint64_t bytes() const;
 
  private:
   friend class Space<S>;
-  /// @param derived  null for none
-  void take(const WorldState<S>& state, const Derived<S>* derived);
-
-  WorldState<S> state_;
-  Derived<S>* derived_;  ///< Null only after a move.
+  SavedParts<S>* parts_;  ///< Null only after a move.
 };
 
 #define SAMESTEP_EACH_SCALAR extern template class SavedSpace<S>;

@@ -240,6 +240,27 @@ class SlotMap {
     return true;
   }
 
+  /// Takes over generations that another map had, in place: slots in use keep the values they have, or have
+  /// T(), for the caller to set; values of free slots are set to T(). Takes no memory where the slots fit.
+  /// @param generationOf  answers the generation of a slot
+  template <class GenerationOf>
+  void setSlots(std::uint32_t slots, GenerationOf&& generationOf) {
+    values_.resize(slots);
+    generations_.resize(slots);
+    free_.reset(slots);
+    size_ = 0;
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      const bool wasFree = (generations_[slot] & 1) == 0;
+      generations_[slot] = generationOf(slot);
+      if (aliveAt(slot)) {
+        ++size_;
+        continue;
+      }
+      if (!wasFree) values_[slot] = T();
+      if (generations_[slot] != kRetired) free_.add(slot);
+    }
+  }
+
   friend bool operator==(const SlotMap& a, const SlotMap& b) {
     return a.generations_ == b.generations_ && a.values_ == b.values_;
   }

@@ -432,6 +432,8 @@ class Space {
   /// original did, under the ids of the original: those of the world there was are refused from here on, if
   /// it was that of another Space. What came to be after the world was saved has never been; its ids are
   /// given out again, so who has kept one must drop it: see worldsBroughtIn.
+  /// Results of the last step come only with the next one: until then the impulses that visits see are 0 and
+  /// the materials those of the shapes, as after loadSnapshot.
   /// @throws SpaceLocked; ForeignWorld where nothing was saved; MissingCallback if this Space lacks a number
   ///         the world uses
   void restore(const SavedSpace<S>& saved);
@@ -471,9 +473,9 @@ class Space {
   void requireUsable() const { require<Fault::LeftMidway>(!leftMidway_); }
   void requireUnlocked() const;
   /// Brings in a world whole, or leaves this one midway.
-  /// @param derived  what was computed from it, or null
-  template <class Take>
-  void bringIn(const WorldState<S>& state, const Derived<S>* derived, Take&& take);
+  /// @param theirs  whose ids those of that world are, or 0
+  template <class Bring>
+  void bringIn(std::uint32_t theirs, Bring&& bring);
   /// From here on the ids of this world are those of the Space of a number; see Id::space.
   void giveIds(std::uint32_t space);
   StepContext<S> contextOf(S dt = S(0));

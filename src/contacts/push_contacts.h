@@ -35,6 +35,15 @@ void takeSurfaces(Pair<S>& pair, const Surface<S>& a, const Surface<S>& b, const
   pair.surfaceVelocity = velocity - normal * dot(velocity, normal);
 }
 
+/// Forgets what a pair shows of the last step and is no state.
+template <Scalar S>
+void forgetResults(Pair<S>& pair) {
+  for (Contact<S>& contact : pair.contacts) contact.normalTotal = contact.tangentTotal = S(0);
+  pair.elasticity = pair.friction = S(0);
+  pair.surfaceVelocity = {};
+  pair.solved = 0;
+}
+
 /// Puts normal and points of a collision into the pair; a point that the pair had before keeps its impulses.
 /// @param a, b  where the bodies stood
 /// @throws BufferOverflow (an internal error) if they are more than a pair holds; the pair is as it was

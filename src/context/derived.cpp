@@ -60,7 +60,7 @@ void Derived<S>::copyFrom(const Derived& other) {
   shapesHashKnown = other.shapesHashKnown;
   shapesHash = other.shapesHash;
   if (!other.cached) return;
-  poses = other.poses;
+  stands = other.stands;
   firstShape = other.firstShape;
   lastShape = other.lastShape;
   nextShape = other.nextShape;
@@ -78,9 +78,49 @@ void Derived<S>::copyFrom(const Derived& other) {
   planeRoom = other.planeRoom;
   staticTree.copyFrom(other.staticTree);
   dynamicTree.copyFrom(other.dynamicTree);
-  makeRoom(touched, poses.size());
+  makeRoom(touched, firstShape.size());
   usePlanes();
   cached = true;
+}
+
+template <Scalar S>
+void Derived<S>::saveTo(Derived& saved) const {
+  saved.copyFrom(*this);
+  if (!cached) return;
+  saved.cached = false;
+  saved.stands.resize(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    saved.stands[i] = poses[i].known && isTouched[i] == 0 ? 1 : 0;
+  }
+  saved.cached = true;
+}
+
+template <Scalar S>
+void Derived<S>::restoreFrom(const Derived& saved, const WorldState<S>& world) {
+  cached = false;
+  if (saved.cached) poses.resize(saved.stands.size());
+  copyFrom(saved);
+  for (std::uint32_t i = 0; cached && i < poses.size(); ++i) {
+    const bool known = saved.stands[i] != 0 && world.bodies.aliveAt(i);
+    poses[i] = known ? PlacedPose<S>::of(world.bodies.valueAt(i)) : PlacedPose<S>();
+  }
+}
+
+template <Scalar S>
+void Derived<S>::completePairs(WorldState<S>& world) {
+  if (!surfacesLacking) return;
+  surfacesLacking = false;
+  for (Pair<S>& pair : world.pairs) takeShapesSurfaces(world, pair);
+  surfacesKnown = true;
+}
+
+template <Scalar S>
+void Derived<S>::takeShapesSurfaces(const WorldState<S>& world, Pair<S>& pair) {
+  const Shape<S>& a = world.shapes.valueAt(pair.a.index);
+  const Shape<S>& b = world.shapes.valueAt(pair.b.index);
+  const bool belt = a.surfaceVelocity() != b.surfaceVelocity();
+  takeSurfaces(pair, Surface<S>::of(a), Surface<S>::of(b),
+               belt ? worldNormal(pair, world.bodies.valueAt(a.body().index)) : Vector<S>());
 }
 
 template <Scalar S>
@@ -97,7 +137,7 @@ std::uint64_t Derived<S>::bytes() const {
     return (std::uint64_t{0} + ... + (list.size() * sizeof(list[0])));
   };
   if (!cached) return 0;
-  return of(poses, firstShape, lastShape, nextShape, placed, traits, around, planeOffset, planes, touched,
+  return of(stands, firstShape, lastShape, nextShape, placed, traits, around, planeOffset, planes, touched,
             isTouched, planeRoom, geometry) +
          localPlanes.bytes() + surfaces.bytes() + staticTree.bytes() + dynamicTree.bytes();
 }

@@ -153,8 +153,13 @@ struct Derived {
   Derived() = default;
   Derived(const Derived&) = delete;
   Derived& operator=(const Derived&) = delete;
+  /// Copies everything but poses.
   void copyFrom(const Derived& other);
-  /// Bytes that copyFrom copies.
+  /// Copies into a saved world: instead of the poses which bodies stand where they were placed.
+  void saveTo(Derived& saved) const;
+  /// Takes the copy of a saved world whose state is in `world`.
+  void restoreFrom(const Derived& saved, const WorldState<S>& world);
+  /// Bytes that saveTo copies.
   std::uint64_t bytes() const;
 
   bool cached = false;
@@ -162,6 +167,8 @@ struct Derived {
   bool shapesHashKnown = false;
   std::uint64_t shapesHash = 0;
   std::vector<PlacedPose<S>> poses;
+  // Of each body in a saved world, instead: whether it stands where its shapes were placed.
+  std::vector<std::uint8_t> stands;
   std::vector<std::uint32_t> firstShape;
   std::vector<std::uint32_t> lastShape;
   std::vector<std::uint32_t> nextShape;
@@ -171,6 +178,8 @@ struct Derived {
   Surfaces<S> surfaces;
   // Whether the surfaces in all pairs that touched in the last step are those of the shapes.
   bool surfacesKnown = false;
+  // Whether pairs came from elsewhere, without the surfaces that callbacks and visits are shown.
+  bool surfacesLacking = false;
   std::vector<std::uint32_t> planeOffset;
   std::vector<Plane<S>> planes;
   LocalPlanes<S> localPlanes;
@@ -203,6 +212,10 @@ struct Derived {
     cached = false;
     bodyPairs.known = false;
   }
+  /// Sets the surfaces of pairs that came from elsewhere.
+  void completePairs(WorldState<S>& world);
+  /// Sets the surfaces of a pair to what its shapes have.
+  static void takeShapesSurfaces(const WorldState<S>& world, Pair<S>& pair);
   /// Places the shapes of the bodies that may have been moved by hand.
   void refresh(const WorldState<S>& world);
   /// Places the shapes of a body, and moves their boxes if any moved.

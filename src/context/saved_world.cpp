@@ -4,12 +4,12 @@
 #include <utility>
 
 #include "base/require_ieee.h"
-#include "context/derived.h"
+#include "context/saved_parts.h"
 
 namespace samestep {
 
 template <Scalar S>
-SavedSpace<S>::SavedSpace() : derived_(new Derived<S>) {}
+SavedSpace<S>::SavedSpace() : parts_(new SavedParts<S>) {}
 
 template <Scalar S>
 SavedSpace<S>::SavedSpace(const SavedSpace& other) : SavedSpace() {
@@ -17,69 +17,46 @@ SavedSpace<S>::SavedSpace(const SavedSpace& other) : SavedSpace() {
 }
 
 template <Scalar S>
-SavedSpace<S>::SavedSpace(SavedSpace&& other) noexcept
-    : state_(std::move(other.state_)), derived_(std::exchange(other.derived_, nullptr)) {}
+SavedSpace<S>::SavedSpace(SavedSpace&& other) noexcept : parts_(std::exchange(other.parts_, nullptr)) {}
 
 template <Scalar S>
 SavedSpace<S>& SavedSpace<S>::operator=(const SavedSpace& other) {
-  if (this != &other) take(other.state_, other.derived_);
+  if (this == &other) return *this;
+  if (parts_ == nullptr) parts_ = new SavedParts<S>;
+  if (other.parts_ == nullptr) {
+    parts_->clear();
+  } else {
+    parts_->take(*other.parts_);
+  }
   return *this;
 }
 
 template <Scalar S>
-void SavedSpace<S>::take(const WorldState<S>& state, const Derived<S>* derived) {
-  // A part of a world is none.
-  struct AllOrNothing {
-    WorldState<S>& state;
-    bool all = false;
-    ~AllOrNothing() {
-      if (!all) state = {};
-    }
-  } guard{state_};
-  if (derived_ == nullptr) derived_ = new Derived<S>;
-  derived_->cached = false;
-  state_ = state;
-  if (derived != nullptr) derived_->copyFrom(*derived);
-  guard.all = true;
-}
-
-template <Scalar S>
 SavedSpace<S>& SavedSpace<S>::operator=(SavedSpace&& other) noexcept {
-  std::swap(state_, other.state_);
-  std::swap(derived_, other.derived_);
+  std::swap(parts_, other.parts_);
   return *this;
 }
 
 template <Scalar S>
 SavedSpace<S>::~SavedSpace() {
-  delete derived_;
+  delete parts_;
 }
 
-namespace {
+template <Scalar S>
+std::uint64_t SavedSpace<S>::stamp() const {
+  return parts_ == nullptr ? 0 : parts_->records.stamp();
+}
 
-/// Counts the bytes of the records of each section.
-struct SectionBytes {
-  std::uint64_t total = 0;
-
-  template <class T>
-  void operator()(const char*, const T&) {}
-  template <class T, class IdType>
-  void operator()(const Section&, const SlotMap<T, IdType>& records) {
-    total += records.slots() * (sizeof(T) + sizeof(std::uint32_t));
-  }
-  template <class T>
-  void operator()(const Section&, const std::vector<T>& records) {
-    total += records.size() * sizeof(T);
-  }
-};
-
-}  // namespace
+template <Scalar S>
+WorldState<S> SavedSpace<S>::state() const {
+  WorldState<S> state;
+  if (parts_ != nullptr && !parts_->records.empty()) parts_->records.giveTo(state);
+  return state;
+}
 
 template <Scalar S>
 std::uint64_t SavedSpace<S>::bytes() const {
-  SectionBytes records;
-  WorldState<S>::sections(records, state_);
-  return sizeof state_ + records.total + (derived_ == nullptr ? 0 : derived_->bytes());
+  return parts_ == nullptr ? 0 : parts_->records.bytes() + parts_->derived.bytes();
 }
 
 #define SAMESTEP_EACH_SCALAR template class SavedSpace<S>;

@@ -88,6 +88,11 @@ template <Scalar S>
 void Body<S>::derive() {
   const SinCos<S> turn = sincos(angle_);
   rotation_ = {turn.cos, turn.sin};
+  deriveMass();
+}
+
+template <Scalar S>
+void Body<S>::deriveMass() {
   const Scaled<S> zero{};
   const bool moves = isDynamic() && mass_ > S(0);
   inverseMass_ = moves ? reciprocal(toScaled(mass_)) : zero;

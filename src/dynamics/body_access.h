@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 
 #include <samestep/body.h>
 
@@ -34,6 +35,16 @@ struct BodyAccess {
   static void clearForces(Body<S>& body) {
     body.force_ = {};
     body.torque_ = S(0);
+  }
+  /// Takes fields and rotation of a saved body from a reader. What follows from the mass stays where that is
+  /// the mass the body had, as nearly always when a world goes back a few steps.
+  template <class Reader>
+  static void unpack(Body<S>& body, Reader& read) {
+    const auto before = std::tuple(body.type_, body.rotates_, body.mass_, body.moment_);
+    read.get(body);
+    read.get(body.rotation_);
+    if (before != std::tuple(body.type_, body.rotates_, body.mass_, body.moment_)) body.deriveMass();
+    body.stepping_ = body.held_ = 0;
   }
   /// Of a body that is not dynamic: its mass is to be summed over its shapes when it becomes so.
   static void forgetMass(Body<S>& body) { body.forgetMass(); }

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/require_ieee.h"
-#include "contacts/push_contacts.h"
 #include "snapshot/world_check.h"
 #include "state/canonical_reader.h"
 #include "state/compact.h"
@@ -110,19 +109,9 @@ class WorldReader {
     };
     if (exists(pair.a)) pair.a = world_.shapes.idAt(pair.a.index);
     if (exists(pair.b)) pair.b = world_.shapes.idAt(pair.b.index);
-    const char* flaw = check_.flawOf(pair);
-    if (flaw == nullptr) deriveSurfaces(pair);
-    return flaw;
+    return check_.flawOf(pair);
   }
   const char* accept(const HandlerBinding& binding) { return check_.flawOf(binding); }
-
-  /// Sets what visits read until the next step, and is no state.
-  void deriveSurfaces(Pair<S>& pair) const {
-    const Shape<S>& a = world_.shapes.valueAt(pair.a.index);
-    const Shape<S>& b = world_.shapes.valueAt(pair.b.index);
-    takeSurfaces(pair, Surface<S>::of(a), Surface<S>::of(b),
-                 worldNormal(pair, world_.bodies.valueAt(a.body().index)));
-  }
 
   ByteReader& bytes_;
   CanonicalReader read_;

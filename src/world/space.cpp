@@ -10,6 +10,7 @@
 #include "base/change.h"
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
+#include "context/saved_parts.h"
 #include "dynamics/body_access.h"
 #include "state/state_hash.h"
 #include "world/objects.h"
@@ -560,7 +561,8 @@ KernelTarget Space<S>::kernel() const {
 template <Scalar S>
 void Space<S>::save(SavedSpace<S>& into) const {
   requireUnlocked();
-  into.take(state_, &parts_->derived);
+  if (into.parts_ == nullptr) into.parts_ = new SavedParts<S>;
+  into.parts_->take(state_, parts_->derived);
 }
 
 template <Scalar S>
@@ -609,6 +611,7 @@ void takeOver(StepContext<S> world) {
   world.wiring.bound.take(world.state.handlers, world.wiring.handlers);
   world.derived.shapesHashKnown = false;
   world.derived.forget();
+  world.derived.surfacesLacking = true;
   world.events.range.clear();
 }
 
@@ -620,34 +623,42 @@ std::uint64_t Space<S>::worldsBroughtIn() const {
 }
 
 template <Scalar S>
-template <class Take>
-void Space<S>::bringIn(const WorldState<S>& state, const Derived<S>* derived, Take&& take) {
-  require<Fault::SpaceLocked>(locked_ == 0);
-  checkAdoptable(parts_->wiring, state);
-  const std::uint32_t theirs = state.bodies.space(), space = theirs != 0 ? theirs : state_.bodies.space();
+template <class Bring>
+void Space<S>::bringIn(std::uint32_t theirs, Bring&& bring) {
+  const std::uint32_t space = theirs != 0 ? theirs : state_.bodies.space();
   Change change(leftMidway_);
   parts_->postStep.drop();
-  take();
+  bring();
   giveIds(space);
   takeOver(contextOf());
-  if (derived != nullptr) parts_->derived.copyFrom(*derived);
   change.done();
   leftMidway_ = false;
 }
 
 template <Scalar S>
 void Space<S>::restore(const SavedSpace<S>& saved) {
-  bringIn(saved.state_, saved.derived_, [&] { state_ = saved.state_; });
+  require<Fault::SpaceLocked>(locked_ == 0);
+  require<Fault::ForeignWorld>(saved.parts_ != nullptr && !saved.parts_->records.empty(),
+                               "Nothing was saved there.");
+  saved.parts_->records.requireCallbacks(parts_->wiring);
+  bringIn(saved.parts_->records.space(), [&] { saved.parts_->records.giveTo(state_); });
+  Change change(leftMidway_);
+  parts_->derived.restoreFrom(saved.parts_->derived, state_);
+  change.done();
 }
 
 template <Scalar S>
 void Space<S>::adopt(const WorldState<S>& state) {
-  bringIn(state, nullptr, [&] { state_ = state; });
+  require<Fault::SpaceLocked>(locked_ == 0);
+  checkAdoptable(parts_->wiring, state);
+  bringIn(state.bodies.space(), [&] { state_ = state; });
 }
 
 template <Scalar S>
 void Space<S>::adopt(WorldState<S>&& state) {
-  bringIn(state, nullptr, [&] { state_ = std::move(state); });
+  require<Fault::SpaceLocked>(locked_ == 0);
+  checkAdoptable(parts_->wiring, state);
+  bringIn(state.bodies.space(), [&] { state_ = std::move(state); });
 }
 
 template <Scalar S>
@@ -662,6 +673,7 @@ template <Scalar S>
 void Space<S>::visitArbiters(const BodyId* of, void (*visit)(Arbiter<S>&, void*), void* data) {
   requireUsable();
   StepContext<S> world = contextOf();
+  world.derived.completePairs(state_);
   const auto visitPair = [&](Pair<S>& pair) {
     if (!ContactCallbacks<S>::touching(pair)) return;
     Arbiter<S> arbiter = ContactCallbacks<S>::arbiterOf(world, pair);

@@ -83,6 +83,7 @@ bool Step<S>::run(StepContext<S>& step) {
   step.state.timeStep = step.dt;
   ++step.state.stamp;
   step.events.begin(step.state);
+  step.derived.completePairs(step.state);
   // What position functions ask about is the world before any of them moved a body; the soft step begins with
   // it: nothing but what was moved by hand has to be placed.
   if (step.isSoft() || !step.wiring.positionFuncs.empty()) step.derived.refresh(step.state);

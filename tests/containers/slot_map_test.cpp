@@ -199,6 +199,31 @@ TEST(SlotMapTest, RestoreRefusesBrokenStatesAndKeepsTheOldOne) {
   EXPECT_EQ(map.size(), 1u);
 }
 
+// As a restore uses it: values of slots in use may stay, those of slots that are free now may not.
+TEST(SlotMapTest, SlotsSetInPlaceGiveOutTheSameIds) {
+  Map map;
+  for (int i = 0; i < 40; ++i) map.insert(i + 1);
+  for (std::uint32_t i = 0; i < 40; i += 3) map.erase(map.idAt(i));
+  map.insert(7);
+  for (const int before : {0, 5, 40, 80}) {
+    Map set;
+    for (int i = 0; i < before; ++i) set.insert(100 + i);
+    if (before > 6) set.erase(set.idAt(6));
+    set.setSlots(map.slots(), [&](std::uint32_t slot) { return map.generationAt(slot); });
+    EXPECT_EQ(set.size(), map.size());
+    for (std::uint32_t slot = 0; slot < set.slots(); ++slot) {
+      if (!set.aliveAt(slot)) {
+        EXPECT_EQ(set.valueAt(slot), 0);
+      } else {
+        set.valueAt(slot) = map.valueAt(slot);
+      }
+    }
+    EXPECT_EQ(set, map);
+    Map again = map;
+    for (int i = 0; i < 30; ++i) ASSERT_EQ(set.insert(i), again.insert(i));
+  }
+}
+
 TEST(SlotMapTest, ASlotWhoseGenerationsAreUsedUpIsNeverUsedAgain) {
   Map map;
   ASSERT_TRUE(map.restore({5}, {Map::kRetired - 1}));

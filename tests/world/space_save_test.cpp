@@ -2,6 +2,7 @@
 // Saved worlds continue as the original; forgetting the cache changes nothing.
 #include <samestep/space.h>
 
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -119,7 +120,8 @@ TYPED_TEST(SpaceSaveTest, CopiesOfASavedWorldOutliveItAndItsSpace) {
     copy = saved;
     assigned = SavedSpace<S>(copy);
     EXPECT_EQ(assigned.bytes(), saved.bytes());
-    EXPECT_GT(saved.bytes(), saved.state().pairs.size() * sizeof(Pair<S>));
+    EXPECT_GT(saved.bytes(), space.state().shapes.size() * sizeof(Shape<S>));
+    EXPECT_EQ(saved.state().pairs.size(), space.state().pairs.size());
     rest = this->run(space, kSteps, 2 * kSteps);
   }
   Space<S> other;
@@ -140,6 +142,138 @@ TYPED_TEST(SpaceSaveTest, DroppingTheCacheAtEachTickChangesNothing) {
       ASSERT_EQ(this->run(dropped, step, step + 1), this->run(kept, step, step + 1))
           << "scene " << seed << ", step " << step;
     }
+  }
+}
+
+TYPED_TEST(SpaceSaveTest, ResultsOfAStepComeOnlyWithTheNextOne) {
+  using S = TypeParam;
+  Space<S> space;
+  space.setGravity({S(0), S(-10)});
+  Shape<S> floor = segmentShape<S>(space.staticBody(), {S(-8), S(0)}, {S(8), S(0)});
+  floor.setFriction(ratio<S>(1, 2));
+  floor.setElasticity(ratio<S>(1, 2));
+  space.add(floor);
+  const ShapeId box = addBox<S>(space, {S(0), ratio<S>(1, 2)}, S(1), S(1), S(1));
+  space.change(box, [](Shape<S>& shape) {
+    shape.setFriction(ratio<S>(1, 4));
+    shape.setElasticity(ratio<S>(1, 4));
+  });
+  for (int i = 0; i < 10; ++i) space.step(kTick<S>);
+  const SavedSpace<S> saved = space.save();
+  const auto seen = [](Space<S>& in) {
+    Vector<S> impulse{};
+    int visits = 0;
+    in.eachArbiter([&](Arbiter<S>& arbiter) {
+      ++visits;
+      impulse = arbiter.totalImpulse();
+      EXPECT_EQ(arbiter.friction(), ratio<S>(1, 8));
+      EXPECT_EQ(arbiter.restitution(), ratio<S>(1, 8));
+    });
+    EXPECT_EQ(visits, 1);
+    return impulse;
+  };
+  EXPECT_NE(seen(space), Vector<S>());
+  space.step(kTick<S>);
+  const Vector<S> next = seen(space);
+  space.restore(saved);
+  EXPECT_EQ(seen(space), Vector<S>());
+  space.step(kTick<S>);
+  EXPECT_EQ(seen(space), next);
+}
+
+// A handler that goes by what it is shown would else undo the promise that a restored world continues alike.
+TYPED_TEST(SpaceSaveTest, CallbacksAreShownTheSameAfterARestore) {
+  using S = TypeParam;
+  using Shown = std::vector<std::tuple<char, S, S, Vector<S>>>;
+  CollisionHandler<S> handler;
+  const auto note = [](char what, const Arbiter<S>& arbiter, void* data) {
+    static_cast<Shown*>(data)->emplace_back(what, arbiter.friction(), arbiter.restitution(),
+                                            arbiter.totalImpulse());
+  };
+  static constexpr auto kNote = note;
+  handler.begin = [](Arbiter<S>& arbiter, Space<S>&, void* data) {
+    kNote('b', arbiter, data);
+    return true;
+  };
+  handler.preSolve = [](Arbiter<S>& arbiter, Space<S>&, void* data) {
+    kNote('p', arbiter, data);
+    arbiter.setFriction(S(3));
+    return true;
+  };
+  handler.postSolve = [](Arbiter<S>& arbiter, Space<S>&, void* data) { kNote('s', arbiter, data); };
+  handler.separate = [](Arbiter<S>& arbiter, Space<S>&, void* data) { kNote('e', arbiter, data); };
+  for (const SolverKind solver : {SolverKind::sequentialImpulses, SolverKind::softStep}) {
+    Shown shown;
+    handler.data = &shown;
+    Space<S> space;
+    space.setSolver(solver);
+    space.registerHandler(1, handler);
+    space.addDefaultCollisionHandler(1);
+    fillAtRandom(space, 5);
+    const auto play = [&] {
+      shown.clear();
+      for (int i = 0; i < 20; ++i) space.step(kTick<S>);
+      return shown;
+    };
+    play();
+    for (int round = 0; round < 6; ++round) {
+      const SavedSpace<S> saved = space.save();
+      const Shown first = play();
+      space.restore(saved);
+      EXPECT_EQ(play(), first) << round;
+      EXPECT_FALSE(first.empty());
+    }
+  }
+}
+
+TYPED_TEST(SpaceSaveTest, WhatFollowsFromTheMassComesBackWhateverWasThere) {
+  using S = TypeParam;
+  Space<S> space;
+  const BodyId turning = space.add(Body<S>(S(2), S(3)));
+  const BodyId upright = space.add(Body<S>::nonRotating(S(5)));
+  const BodyId free = space.add(Body<S>(S(1), S(1)));
+  space.body(turning).setAngle(S(1));
+  const SavedSpace<S> saved = space.save();
+  const Body<S> before[] = {space.body(turning), space.body(upright), space.body(free)};
+  space.body(turning).setMass(S(7));
+  space.body(turning).setMoment(S(9));
+  space.body(turning).setAngle(S(2));
+  space.setType(upright, BodyType::kinematicBody);
+  space.remove(free);
+  Space<S> other;
+  for (Space<S>* into : {&space, &other}) {
+    into->restore(saved);
+    for (const Body<S>& was : before) {
+      const Body<S>& body = into->body(was.id());
+      EXPECT_EQ(body.inverseMass(), was.inverseMass());
+      EXPECT_EQ(body.inverseMoment(), was.inverseMoment());
+      EXPECT_EQ(body.rotation(), was.rotation());
+    }
+  }
+}
+
+// The copy of what was computed does not hold where shapes were placed, but whether their body stands there.
+TYPED_TEST(SpaceSaveTest, ABodyMovedByHandIsFoundWhereItIsAfterARestore) {
+  using S = TypeParam;
+  Space<S> space;
+  const ShapeId moved = addDisc<S>(space, {}, S(1), S(1));
+  const ShapeId still = addDisc<S>(space, {S(50), S(0)}, S(1), S(1));
+  space.step(kTick<S>);
+  space.body(bodyOf(space, moved)).setPosition({S(10), S(0)});
+  const SavedSpace<S> saved = space.save();
+  space.body(bodyOf(space, moved)).setPosition({S(20), S(0)});
+  space.body(bodyOf(space, still)).setPosition({S(60), S(0)});
+  space.step(kTick<S>);
+  Space<S> other;
+  std::vector<ShapeId> found;
+  for (Space<S>* into : {&space, &other}) {
+    into->restore(saved);
+    into->boxQuery({S(9), S(-1), S(11), S(1)}, {}, found);
+    EXPECT_EQ(found, std::vector<ShapeId>{moved});
+    into->boxQuery({S(49), S(-1), S(51), S(1)}, {}, found);
+    EXPECT_EQ(found, std::vector<ShapeId>{still});
+    into->boxQuery({S(19), S(-1), S(21), S(1)}, {}, found);
+    EXPECT_TRUE(found.empty());
   }
 }
 

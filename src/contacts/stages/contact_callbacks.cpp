@@ -140,6 +140,8 @@ bool ContactCallbacks<S>::ask(Context& context, Pair<S>& pair) {
 template <Scalar S>
 void ContactCallbacks<S>::separate(Context& context, Pair<S>& pair, bool removal) {
   if (context.state.handlers.empty()) return;
+  // What callbacks set for the last step in which they touched is over; a saved world does not have it.
+  if (!removal) Derived<S>::takeShapesSurfaces(context.state, pair);
   Arbiter<S> arbiter = arbiterOf(context, pair);
   arbiter.removal_ = removal;
   const CollisionHandler<S>* handler = handlerFor(context, arbiter);
@@ -175,6 +177,7 @@ void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape
   const auto meant = [&](const Pair<S>& pair) {
     return !shape.valid() || pair.a == shape || pair.b == shape;
   };
+  context.derived.completePairs(context.state);
   const std::span<const std::uint32_t> ofBody = context.derived.pairsOf(context.state, body);
   context.pay(Budget::kPerCandidate * (context.state.pairs.size() + ofBody.size()));
   std::uint32_t called = 0;

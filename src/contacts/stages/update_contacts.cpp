@@ -95,7 +95,11 @@ bool UpdateContacts<S>::collideRange(StepContext<S>& step, const std::uint8_t* o
     Pair<S>& pair = step.state.pairs[i];
     if (pair.state == ArbiterState::firstCollision) pair.state = ArbiterState::normal;
     pair.solved = 0;
-    if (pair.state != ArbiterState::apart && pair.age != 0xffffffffu) ++pair.age;
+    if (pair.state != ArbiterState::apart) {
+      if (pair.age != 0xffffffffu) ++pair.age;
+      // No callback before the solver's end may see an impulse of the step before: a saved world has none.
+      for (Contact<S>& contact : pair.contacts) contact.normalTotal = contact.tangentTotal = S(0);
+    }
     std::uint8_t found = 0;
     if (overlapping[i] != 0) {
       found = collidePair(step, pair, deciding, stats);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "context/derived.h"
+#include "context/saved_records.h"
+
+namespace samestep {
+
+/// What a saved world consists of.
+template <Scalar S>
+struct SavedParts {
+  SavedRecords<S> records;
+  Derived<S> derived;
+
+  /// Holds nothing from here on.
+  void clear() {
+    records.clear();
+    derived.forget();
+  }
+  // Where memory ends midway, nothing is held.
+
+  void take(const WorldState<S>& world, const Derived<S>& computed) {
+    clear();
+    computed.saveTo(derived);
+    records.take(world);
+  }
+  void take(const SavedParts& other) {
+    clear();
+    derived.copyFrom(other.derived);
+    records = other.records;
+  }
+};
+
+}  // namespace samestep
