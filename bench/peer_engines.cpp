@@ -22,7 +22,7 @@ std::unique_ptr<World> makeSamestep(const std::string& engine, const PeerScene& 
   std::string name = engine;
   KernelTarget kernel = KernelTarget::best;
   if (const std::size_t at = name.rfind('-');
-      at != std::string::npos && findKernel(name.substr(at + 1), kernel)) {
+      at != std::string::npos && findKernel(name.c_str() + at + 1, kernel)) {
     if (!isAvailable(kernel)) return nullptr;
     name.resize(at);
   }

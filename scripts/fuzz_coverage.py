@@ -20,7 +20,7 @@ GROUPS = {
                   ("collide", "gjk_epa", "hull", "bb_tree", "space", "snapshot", "scene")),
     "parsing": ("""
         src/snapshot/snapshot.cpp src/snapshot/space_codec.cpp src/state/canonical_reader.h src/state/compact.h src/math/decimal_double.cpp
-        fixed/include/samestep/raw_decimal.h fixed/include/samestep/fixed_text.h
+        fixed/include/samestep/raw_decimal.h fixed/include/samestep/raw_parse_decimal.h fixed/include/samestep/fixed_text.h
         replay/recording/recording.cpp replay/recording/replay.cpp replay/recording/command.cpp replay/scenes/json.cpp replay/scenes/scene.cpp
         replay/scenes/scene_builder.cpp replay/scenes/scene_csv.cpp replay/scenes/scene_cursor.cpp replay/scenes/scene_events.cpp
         replay/scenes/scene_source.cpp

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 
 namespace samestep {
 
@@ -29,7 +28,7 @@ inline constexpr KernelTarget kKernelTargets[] = {
 /// "best", "portable", "sse42", "avx2", "avx512", "neon", "simd128".
 const char* kernelName(KernelTarget target);
 /// The target of a name; false if there is none, and `target` stays as it is.
-bool findKernel(std::string_view name, KernelTarget& target);
+bool findKernel(const char* name, KernelTarget& target);
 
 /// Those that were built and that this processor can run, the slowest first: always `portable`, never `best`.
 std::span<const KernelTarget> availableKernels();

@@ -18,20 +18,11 @@ namespace samestep {
 class FreeSlots {
  public:
   /// As many, none of them free.
-  void reset(std::uint32_t slots) {
-    words_.assign(wordsFor(slots), 0);
-    summary_.assign(wordsFor(wordsFor(slots)), 0);
-  }
+  void reset(std::uint32_t slots);
   /// Makes room for so many.
-  void reserve(std::uint32_t slots) {
-    makeRoom(words_, wordsFor(slots));
-    makeRoom(summary_, wordsFor(wordsFor(slots)));
-  }
+  void reserve(std::uint32_t slots);
   /// New slots are not free.
-  void grow(std::uint32_t slots) {
-    words_.resize(wordsFor(slots), 0);
-    summary_.resize(wordsFor(wordsFor(slots)), 0);
-  }
+  void grow(std::uint32_t slots);
   void add(std::uint32_t slot) {
     words_[slot / 64] |= bit(slot);
     summary_[slot / 4096] |= bit(slot / 64);

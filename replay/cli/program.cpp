@@ -34,7 +34,7 @@ void addScalarOption(CLI::App& app, std::string& scalar) {
 
 KernelTarget ComputeOptions::target() const {
   KernelTarget target = KernelTarget::best;
-  findKernel(kernel, target);
+  findKernel(kernel.c_str(), target);
   if (isAvailable(target)) return target;
   std::string reason = "this build or this processor has no kernel \"" + kernel + "\"; it has";
   for (const KernelTarget available : availableKernels()) reason += std::string(" ") + kernelName(available);

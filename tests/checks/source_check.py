@@ -88,6 +88,9 @@ RULES = [
 ]
 HEAVY_HEADERS = re.compile(
     r"#\s*include\s*<(functional|memory|iostream|ranges|regex|sstream|fstream|iomanip|random|thread|map|set)>")
+# What every client compiles includes none of these, whose parsing takes longer than all of our own headers.
+CLIENT_HEADER = Path("include/samestep/space.h")
+NOT_FOR_CLIENTS = re.compile(r"#\s*include\s*<(string|string_view|algorithm|optional|\w+intrin\.h|arm_neon\.h)>")
 LEFTOVER = re.compile(r"\b(?:FIX" + r"ME|TO" + r"DO|XX" + r"X|HA" + r"CK)\b")
 SKIPPED_TEST = re.compile(r"\bGTEST_" + r"SKIP\b|\bDISA" + r"BLED_")
 MACHINE_PATH = re.compile(r"(?<![\w.}\)])/(?:work|root|home|Users|tmp|mnt|scratch)/\w")
@@ -198,6 +201,7 @@ class Check:
                 self.check_header(path, code, comments)
             self.check_includes(path, code)
         self.check_cycles()
+        self.check_client()
         self.check_folders()
         for path in self.files(ENGINE_FOLDERS + OTHER_FOLDERS, TEXT_SUFFIXES):
             self.check_leftovers(path, self.read(path))
@@ -281,6 +285,24 @@ class Check:
             if cycle:
                 self.report(path, 0, "include-cycle", " -> ".join(map(str, cycle)) + "; name one of them by id")
                 return
+
+    def check_client(self):
+        """Standard headers in what samestep/space.h includes."""
+        reached, waiting = {CLIENT_HEADER}, [CLIENT_HEADER]
+        while waiting:
+            for _, target in self.includes.get(waiting.pop(), []):
+                if target not in reached:
+                    reached.add(target)
+                    waiting.append(target)
+        for path in sorted(reached):
+            if not (self.root / path).is_file():
+                continue
+            for number, line in enumerate(split_comments(self.read(path))[0]):
+                slow = NOT_FOR_CLIENTS.search(line)
+                if slow:
+                    self.report(path, number, "client-header",
+                                f"<{slow.group(1)}> is compiled by everybody who includes samestep/space.h; move what "
+                                "needs it to a header of its own or to the source")
 
     def check_table(self):
         for name in self.layers.stale(self.root):

@@ -65,6 +65,7 @@ SNIPPETS = [
     ("long-double", SOURCE, "long double x = 1;\n", "double x = 1;\n"),
     ("macro", SOURCE, "#define SQUARE(x) ((x) * (x))\n", "#define SAMESTEP_INT128 1\n"),
     ("guard", HEADER, "class Body;\n", header("class Body;\n")),
+    ("client-header", "include/samestep/space.h", header("#include <string>\n"), header("#include <vector>\n")),
     ("heavy-header", HEADER, header("#include <functional>\n"), header("#include <vector>\n")),
     ("unsized-member", HEADER, member("std::size_t count_ = 0;"), member("std::uint64_t count_ = 0;")),
     ("unsized-member", HEADER, member("unsigned long count_{0};"), member("static constexpr std::size_t kMax = 2;")),

@@ -5,8 +5,8 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <type_traits>
+#include <typeindex>  // The smallest header with std::hash.
 #include <utility>
 
 #include "samestep/fixed_checked.h"

@@ -1,15 +1,35 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
 #include <initializer_list>
-#include <string>
 
 #include "samestep/raw_decimal.h"
 
 namespace samestep {
+
+/// The text of a report: room for a name and the longest decimals of all operands.
+class OverflowText {
+ public:
+  const char* c_str() const { return characters_.data(); }
+  void append(const char* text) {
+    while (*text != '\0') append(*text++);
+  }
+  void append(const raw::DecimalText& text) {
+    for (int i = 0; i < text.length; ++i) append(text.characters[static_cast<std::size_t>(i)]);
+  }
+
+ private:
+  void append(char c) {
+    if (length_ + 1 < characters_.size()) characters_[length_++] = c;
+  }
+
+  std::array<char, 1024> characters_{};
+  std::uint32_t length_ = 0;
+};
 
 /// What a checked number met: an overflow, a lost quotient or an argument outside the domain.
 struct OverflowReport {
@@ -21,13 +41,16 @@ struct OverflowReport {
   int fractionBits = 0;  ///< of the operands
 
   /// "multiply(2147483647, 2)"
-  std::string text() const {
-    std::string result = std::string(operation) + "(";
+  OverflowText text() const {
+    OverflowText result;
+    result.append(operation);
+    result.append("(");
     for (int i = 0; i < operandCount; ++i) {
-      if (i > 0) result += ", ";
-      result += raw::formatDecimal(operands[static_cast<std::size_t>(i)], fractionBits).view();
+      if (i > 0) result.append(", ");
+      result.append(raw::formatDecimal(operands[static_cast<std::size_t>(i)], fractionBits));
     }
-    return result + ")";
+    result.append(")");
+    return result;
   }
 };
 
@@ -41,7 +64,7 @@ class FixedOverflow : public std::exception {
 
  private:
   OverflowReport report_;
-  std::string text_;
+  OverflowText text_;
 };
 
 /// Told of each report. If it returns, the operation gives what the wrapping number gives.

@@ -5,6 +5,8 @@
 
 #include "samestep/decimal_status.h"
 #include "samestep/fixed.h"
+#include "samestep/raw_decimal.h"
+#include "samestep/raw_parse_decimal.h"
 
 namespace samestep {
 
@@ -12,7 +14,8 @@ namespace samestep {
 /// Never an exponent, never a point without digits on both sides.
 template <FixedNumber S>
 std::string formatDecimal(S x) {
-  return std::string(raw::formatDecimal(x.raw(), S::kBits).view());
+  const raw::DecimalText text = raw::formatDecimal(x.raw(), S::kBits);
+  return std::string(text.characters.data(), static_cast<std::size_t>(text.length));
 }
 
 /// Reads [+-] digits [. digits] [e [+-] digits] with a digit on at least one side of the point and nothing

@@ -11,10 +11,6 @@
 #error "Samestep needs gcc or clang; on Windows those of MinGW-w64, since MSVC and clang-cl are not supported"
 #endif
 
-#if defined(__SSE2__) && defined(__x86_64__)
-#include <emmintrin.h>
-#endif
-
 /// The ways a machine may compute what the exact result defines. All of them give the same bits; every way
 /// this compiler can build is compiled and compared by the tests. This is the only file that asks which
 /// compiler or processor it meets.
@@ -129,11 +125,18 @@ struct DivideByHalves {
 inline double nearDouble(std::int64_t x) {
 #if defined(__SSE2__) && defined(__x86_64__)
   // The plain conversion keeps the upper half of its register, and so waits for whatever was there before.
-  __m128d result = _mm_cvtsi64_sd(_mm_setzero_pd(), x);
+  // The intrinsic function is not used: its header costs a client a tenth of what all of Samestep's do.
+  using Halves [[gnu::vector_size(16)]] = double;
+  Halves result{};
+#if defined(__clang__)
+  result[0] = static_cast<double>(x);
+#else
+  result = __builtin_ia32_cvtsi642sd(result, x);
+#endif
 #if defined(__GNUC__)
   asm("" : "+x"(result));  // clang would make it the plain conversion again
 #endif
-  return _mm_cvtsd_f64(result);
+  return result[0];
 #else
   return static_cast<double>(x);
 #endif

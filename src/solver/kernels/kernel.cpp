@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/kernel.h>
 
+#include <cstring>
+
 #include "solver/kernels/kernels.h"
 
 namespace samestep {
@@ -52,9 +54,9 @@ const char* kernelName(KernelTarget target) {
   return "?";
 }
 
-bool findKernel(std::string_view name, KernelTarget& target) {
+bool findKernel(const char* name, KernelTarget& target) {
   for (const KernelTarget candidate : kKernelTargets) {
-    if (name != kernelName(candidate)) continue;
+    if (std::strcmp(name, kernelName(candidate)) != 0) continue;
     target = candidate;
     return true;
   }
