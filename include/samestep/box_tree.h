@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <samestep/error.h>
+#include <samestep/expects.h>
 
 namespace samestep {
 
@@ -60,19 +61,22 @@ class BoxTree {
 
   std::uint32_t count() const { return count_; }
   bool contains(Key key) const { return key < places_.size() && places_[key] != kNone; }
-  /// @pre contains(key)
-  const GridBox& box(Key key) const { return nodes_[places_[key] >> 1].box[places_[key] & 1]; }
+  /// The box of a key that is there.
+  const GridBox& box(Key key) const {
+    expects(contains(key));
+    return nodes_[places_[key] >> 1].box[places_[key] & 1];
+  }
   /// 0 for a single leaf.
   std::uint32_t height() const { return nodes_[kAnchor].height[0]; }
   /// All keys in the tree are below this.
   Key keyEnd() const { return static_cast<Key>(places_.size()); }
 
-  /// O(height). @pre !contains(key)
+  /// Puts in a key that is not there. O(height).
   /// @throws IndexOutOfBounds if key >= kMaxKeys, InsufficientBufferSize if the tree is full
   void insert(Key key, const GridBox& box);
-  /// O(height). @pre contains(key)
+  /// Takes out a key that is there. O(height).
   void remove(Key key);
-  /// As remove and insert, but cheaper for a small move. @pre contains(key)
+  /// As remove and insert, but cheaper for a small move.
   void move(Key key, const GridBox& box);
   void clear();
 
@@ -91,7 +95,7 @@ class BoxTree {
     finish(search, area, visit);
   }
   /// Calls visit(other) for every other leaf whose box overlaps that of `key`; otherwise as query, and
-  /// faster: from the leaf upwards only the boxes beside the path are compared. @pre contains(key)
+  /// faster: from the leaf upwards only the boxes beside the path are compared.
   template <class Visit>
   void queryAround(Key key, Visit&& visit) const {
     const GridBox area = box(key);
@@ -107,8 +111,11 @@ class BoxTree {
 
   /// The top node, a leaf, or kNone.
   Ref root() const { return nodes_[kAnchor].child[0]; }
-  /// @pre a node; side 0 or 1
-  Ref child(Ref node, int side) const { return nodes_[node].child[side]; }
+  /// What hangs on a side, 0 or 1, of a node.
+  Ref child(Ref node, int side) const {
+    expects(node < nodes_.size() && (side == 0 || side == 1));
+    return nodes_[node].child[side];
+  }
   /// Hangs `value` where `child` was and refits all boxes above.
   /// @throws LeafError if parent is a leaf, InvalidChild if child does not hang there
   void replaceChild(Ref parent, Ref child, Ref value);

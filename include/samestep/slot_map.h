@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <samestep/error.h>
+#include <samestep/expects.h>
 #include <samestep/id.h>
 #include <samestep/make_room.h>
 
@@ -152,10 +153,15 @@ class SlotMap {
   }
   /// Whether an id may be one of this map's.
   bool isOurs(IdType id) const { return id.space == space_ || id.space == 0 || space_ == 0; }
-  /// @pre slot < slots()
-  bool aliveAt(std::uint32_t slot) const { return (generations_[slot] & 1) != 0; }
-  /// The id of the value in a slot. @pre slot < slots() and aliveAt(slot)
-  IdType idAt(std::uint32_t slot) const { return makeId(slot, generations_[slot]); }
+  bool aliveAt(std::uint32_t slot) const {
+    expects(slot < slots());
+    return (generations_[slot] & 1) != 0;
+  }
+  /// The id of the value in a slot that is in use.
+  IdType idAt(std::uint32_t slot) const {
+    expects(slot < slots() && aliveAt(slot));
+    return makeId(slot, generations_[slot]);
+  }
 
   /// @param asked  by what, for the error
   /// @throws the exception of fault F if the id names no value
@@ -179,9 +185,15 @@ class SlotMap {
   T* find(IdType id) { return contains(id) ? &values_[id.index] : nullptr; }
   const T* find(IdType id) const { return contains(id) ? &values_[id.index] : nullptr; }
 
-  /// What is in a slot, without a check. @pre slot < slots()
-  T& valueAt(std::uint32_t slot) { return values_[slot]; }
-  const T& valueAt(std::uint32_t slot) const { return values_[slot]; }
+  /// What is in a slot below slots().
+  T& valueAt(std::uint32_t slot) {
+    expects(slot < slots());
+    return values_[slot];
+  }
+  const T& valueAt(std::uint32_t slot) const {
+    expects(slot < slots());
+    return values_[slot];
+  }
   std::uint32_t generationAt(std::uint32_t slot) const { return generations_[slot]; }
 
   /// Calls visit(id, value) for each value, by rising index. visit may erase the value it is given.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "session/input_stream.h"
 
+#include <samestep/expects.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -78,6 +80,7 @@ void InputStream::reset(Tick first) {
 }
 
 InputEntry InputStream::at(Tick tick) const {
+  expects(has(tick));
   const Record& record = records_[tick % kCapacity];
   const std::uint8_t* bytes = bytesOf(tick);
   return {{bytes, record.held}, {bytes + 2 * maxHeld_, record.commands}, record.control};

@@ -38,7 +38,7 @@ class InputStream {
   /// The tick after the last input.
   Tick end() const { return end_; }
   bool has(Tick tick) const { return tick >= first_ && tick < end_ && tick + kCapacity >= end_; }
-  /// @pre has(tick)
+  /// The input of a tick that it has.
   InputEntry at(Tick tick) const;
   /// What was held last before a tick; empty before the first and where it is too long ago.
   std::span<const std::uint8_t> heldBefore(Tick tick) const;

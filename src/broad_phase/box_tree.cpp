@@ -148,6 +148,7 @@ void BoxTree::insert(Key key, const GridBox& box) {
   require<Fault::IndexOutOfBounds>(key < kMaxKeys, "a tree: key is ", key, ", allowed are 0 to ",
                                    kMaxKeys - 1);
   require<Fault::InsufficientBufferSize>(count_ < maxLeaves_);
+  expects(!contains(key));
   if (key >= places_.size()) places_.resize(key + 1, kNone);
   ++count_;
   const Ref leaf = kLeaf | key;
@@ -279,6 +280,7 @@ void BoxTree::replaceChild(Ref parent, Ref child, Ref value) {
 }
 
 void BoxTree::remove(Key key) {
+  expects(contains(key));
   const Place place = places_[key];
   const Ref node = place >> 1;
   if (node == kAnchor) {
@@ -294,6 +296,7 @@ void BoxTree::remove(Key key) {
 
 // A leaf seldom goes far: the search for its new place begins at the lowest subtree that holds its new box.
 void BoxTree::move(Key key, const GridBox& box) {
+  expects(contains(key));
   const Place place = places_[key];
   const Ref node = place >> 1;
   if (node == kAnchor) {

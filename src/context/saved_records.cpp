@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "context/saved_records.h"
 
+#include <samestep/expects.h>
+
 #include <algorithm>
 
 #include "base/require_ieee.h"
@@ -188,6 +190,7 @@ void SavedRecords<S>::take(const WorldState<S>& world) {
 
 template <Scalar S>
 void SavedRecords<S>::giveTo(WorldState<S>& world) const {
+  expects(!empty());
   Unpack<S> unpacking{{packed_.data()}, shapes_};
   WorldState<S>::sections(unpacking, world);
 }

@@ -17,8 +17,7 @@ class SavedRecords {
  public:
   void take(const WorldState<S>& world);
   /// Writes the state into a world, in place: nothing of what that was is left but room and what follows from
-  /// masses that are the same.
-  /// @pre !empty()
+  /// masses that are the same. Not for records that are empty().
   void giveTo(WorldState<S>& world) const;
 
   /// Holds nothing from here on.

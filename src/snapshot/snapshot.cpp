@@ -55,7 +55,7 @@ void writeInfo(SpanSink& sink, const SnapshotInfo& info) {
   write.put(info.size);
 }
 
-/// @pre the checksum is right
+/// Reads the world of a snapshot whose checksum is right.
 template <Scalar S>
 WorldState<S> readWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset, std::uint32_t version,
                         const WorldLimits& limits) {

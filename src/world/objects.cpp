@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "world/objects.h"
 
+#include <samestep/expects.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -184,6 +186,7 @@ void Objects<S>::insert(Context& world, const Shape<S>& shape, ShapeId id) {
       world.state.bodies.template at<Fault::BodyNotFound>(shape.body(), "Space::add: the body of the shape");
   require<Fault::DegenerateShape>(shape.wellFormed());
   checkShape(shape, holder);
+  expects(!world.state.shapes.contains(id));
   Derived<S>& derived = world.derived;
   derived.ensure(world.state);
   derived.growShapes(max(world.state.shapes.slots(), id.index + 1));

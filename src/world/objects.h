@@ -25,7 +25,7 @@ struct Objects {
   static void setType(Context& world, BodyId id, BodyType type);
   static void accumulateMass(Context& world, BodyId id);
 
-  /// @pre the id can be given to a new shape
+  /// Takes in a shape under an id that can be given to a new one.
   static void insert(Context& world, const Shape<S>& shape, ShapeId id);
   static void erase(Context& world, ShapeId id);
   /// @param locked  whether geometry and mass may not change

@@ -7,6 +7,7 @@
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
 #include "dynamics/stages/integrate.h"
+#include "world/stage_expectations.h"
 
 namespace samestep {
 
@@ -105,6 +106,7 @@ bool Step<S>::runLines(StepContext<S>& step) {
       takeBack(step);
       return false;
     }
+    if constexpr (kExpects) StageExpectations<S>::after(line.name, step);
     if (step.wiring.observer != nullptr)
       step.wiring.observer(step.space, line.name, step.wiring.observerData);
   }

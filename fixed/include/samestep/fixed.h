@@ -9,6 +9,7 @@
 #include <typeindex>  // The smallest header with std::hash.
 #include <utility>
 
+#include "samestep/expects.h"
 #include "samestep/fixed_checked.h"
 #include "samestep/raw_algebra.h"
 #include "samestep/scalar_results.h"
@@ -198,8 +199,9 @@ class BasicFixed {
   friend constexpr BasicFixed abs(BasicFixed x) { return x.raw_ < 0 ? -x : x; }
   friend constexpr BasicFixed min(BasicFixed a, BasicFixed b) { return b < a ? b : a; }
   friend constexpr BasicFixed max(BasicFixed a, BasicFixed b) { return a < b ? b : a; }
-  /// @pre low <= high
+  /// x held within [low, high].
   friend constexpr BasicFixed clamp(BasicFixed x, BasicFixed low, BasicFixed high) {
+    expects(low <= high);
     return x < low ? low : high < x ? high : x;
   }
   /// There is no infinity and no NaN.

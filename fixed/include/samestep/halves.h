@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <initializer_list>
 
+#include "samestep/expects.h"
+
 namespace samestep {
 
 /// An unsigned 128-bit integer in two halves; arithmetic is modulo 2^128, as of a built-in type.
@@ -57,8 +59,8 @@ constexpr Halves multiplyHalves(std::uint64_t a, std::uint64_t b) {
 }
 
 /// Divides a 128-bit number by a 64-bit one with 64-bit divisions only (Knuth's algorithm D in base 2^32).
-/// @pre numerator.high < divisor, so that the quotient fits
 constexpr QuotientRemainder divideHalves(Halves numerator, std::uint64_t divisor) {
+  expects(numerator.high < divisor);  // So that the quotient fits.
   constexpr std::uint64_t kBase = std::uint64_t{1} << 32;
   const int shift = std::countl_zero(divisor);
   const std::uint64_t d = divisor << shift;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "samestep/expects.h"
 #include "samestep/fixed.h"
 #include "samestep/scalar_results.h"
 
@@ -18,9 +19,10 @@ requires(S::kBits == 32) struct LocalOf<S> {
 /// How far apart places may be for localPlace, m.
 inline constexpr int kLocalReach = 1 << 9;
 
-/// A difference of places. @pre |difference| < kLocalReach
+/// A difference of places, of magnitude below kLocalReach.
 template <FixedNumber S>
 constexpr std::int64_t localPlace(S difference) {
+  expects(difference > S(-kLocalReach) && difference < S(kLocalReach));
   return difference.raw() >> 10;
 }
 /// A component of a unit vector.
@@ -28,9 +30,10 @@ template <FixedNumber S>
 constexpr std::int64_t localUnit(S component) {
   return component.raw() >> 2;
 }
-/// A length in the units of localDot. @pre |length| < kLocalReach
+/// A length of magnitude below kLocalReach in the units of localDot.
 template <FixedNumber S>
 constexpr std::int64_t localLength(S length) {
+  expects(length > S(-kLocalReach) && length < S(kLocalReach));
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(length.raw()) << 20);
 }
 /// x nx + y ny of a place and a unit vector, exactly.

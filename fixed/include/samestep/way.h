@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "samestep/expects.h"
 #include "samestep/halves.h"
 
 #if defined(_MSC_VER)
@@ -150,8 +151,8 @@ struct DivideByDouble : DivideByHalves {
   static constexpr std::uint64_t kMaxDivisor = std::uint64_t{1} << 61;  // twice the remainder fits
 
   /// The quotient of a numerator with these low 64 bits to nearest, ties to even, of magnitudes.
-  /// @pre d < kMaxDivisor, estimate < kMaxQuotient
   static constexpr std::uint64_t rounded(double estimate, std::uint64_t low, std::uint64_t d) {
+    expects(d < kMaxDivisor && estimate < kMaxQuotient);
     // To the nearest of the estimate, so that the remainder's place says all: within 3/2 of d either way.
     const auto quotient = static_cast<std::uint64_t>(static_cast<std::int64_t>(estimate + 0.5));
     // The remainder is small, so that its low 64 bits are all of it.
@@ -222,9 +223,10 @@ struct RootByInteger {
     return roundedRoot(Words::high(square), Words::low(square));
   }
 
-  /// @pre not both 0
+  /// The direction of (x, y), not both 0.
   template <int kBits>
   static constexpr UnitEstimate unit(std::int64_t x, std::int64_t y) {
+    expects((x | y) != 0);
     // At 62 bits the root of the sum of squares has 63, and its error does not count.
     const auto size = [](std::int64_t v) {
       return v < 0 ? 0 - static_cast<std::uint64_t>(v) : static_cast<std::uint64_t>(v);
@@ -244,8 +246,8 @@ struct RootByInteger {
   struct Root {
     std::uint64_t root, rest;
   };
-  /// @pre n >= 2^30
   static constexpr Root root32(std::uint64_t n) {
+    expects(n >= std::uint64_t{1} << 30);
     std::uint64_t root = 0, rest = 0;
     for (int shift = 30; shift >= 0; shift -= 2) {
       rest = rest << 2 | (n >> shift & 3);
@@ -258,8 +260,8 @@ struct RootByInteger {
     }
     return {root, rest};
   }
-  /// @pre n >= 2^62
   static constexpr Root root64(std::uint64_t n) {
+    expects(n >= std::uint64_t{1} << 62);
     const Root upper = root32(n >> 32);
     const std::uint64_t dividend = upper.rest << 16 | (n >> 16 & 0xffff);
     const std::uint64_t quotient = dividend / (2 * upper.root), left = dividend % (2 * upper.root);
@@ -300,9 +302,10 @@ struct RootByDouble {
     return farLength<Words>(x, y);
   }
 
-  /// @pre not both 0
+  /// The direction of (x, y), not both 0.
   template <int kBits>
   static constexpr UnitEstimate unit(std::int64_t x, std::int64_t y) {
+    expects((x | y) != 0);
     if (kBits > 32 || std::is_constant_evaluated()) return RootByInteger::unit<kBits>(x, y);
     constexpr double kScale = static_cast<double>(std::uint64_t{1} << (kBits + kGuardBits));
     const double xd = nearDouble(x), yd = nearDouble(y);

@@ -93,8 +93,8 @@ template <int kBits>
   return (x + (std::int64_t{1} << (kBits - 1)) - (x < 0)) >> kBits;
 }
 
-/// factor * x / 2^bits, the product whole, to nearest, ties away from zero; bits up to 32.
-/// @pre the result fits
+/// factor * x / 2^bits, the product whole, to nearest, ties away from zero; bits up to 32. A result that does
+/// not fit is what the sanitizer build finds.
 template <int kBits>
 [[gnu::always_inline]] inline std::int64_t scaled(std::int32_t factor, std::int64_t x) {
   const std::int64_t high = (x + (std::int64_t{1} << 31)) >> 32;

@@ -46,7 +46,7 @@ class WideLanes {
     if constexpr (kHasGreater) return Vectors::greater(a, b);
     return select(a < b, b, a);
   }
-  /// @pre low <= high
+  /// x held within [low, high].
   [[gnu::always_inline]] static V within(V x, V low, V high) {
     if constexpr (kHasGreater) return Vectors::greater(Vectors::less(x, high), low);
     return select(x < low, low, select(high < x, high, x));
