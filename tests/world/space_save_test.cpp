@@ -104,6 +104,19 @@ TYPED_TEST(SpaceSaveTest, RestoredAtEachTickItContinuesAsTheOriginal) {
   }
 }
 
+TYPED_TEST(SpaceSaveTest, AStateAdoptedAtEachTickContinuesAsTheOriginal) {
+  for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
+    Space<TypeParam> original, adopting;
+    this->fill(original, seed);
+    this->wire(adopting);
+    for (int step = 0; step < 3 * kSteps; ++step) {
+      adopting.adopt(original.state());
+      ASSERT_EQ(this->run(adopting, step, step + 1), this->run(original, step, step + 1))
+          << "scene " << seed << ", step " << step;
+    }
+  }
+}
+
 // It holds what the Space had computed, by pointers into itself.
 TYPED_TEST(SpaceSaveTest, CopiesOfASavedWorldOutliveItAndItsSpace) {
   using S = TypeParam;

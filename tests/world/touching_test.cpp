@@ -254,5 +254,23 @@ TYPED_TEST(TouchingTest, AllThatIsToldOfAHeapTouches) {
   }
 }
 
+// Found while nothing meets, kept while the bodies hardly move, and solved as it is when they do meet.
+TYPED_TEST(TouchingTest, AContactTakenAsItIsHasTheSurfacesOfItsShapes) {
+  using S = TypeParam;
+  for (const bool handled : {false, true}) {
+    Space<S> space;
+    space.setBounceThreshold(S(0));
+    Shape<S> floor = segmentShape<S>(space.staticBody(), {S(-8), S(0)}, {S(8), S(0)});
+    floor.setElasticity(S(1));
+    space.add(floor);
+    const S gap = ratio<S>(1, 2048), speed = ratio<S>(1, 100);
+    const ShapeId box = addBox<S>(space, {S(0), ratio<S>(1, 2) + gap}, S(1), S(1), S(1), {S(0), -speed});
+    space.change(box, [](Shape<S>& shape) { shape.setElasticity(S(1)); });
+    if (handled) this->bind(space, Asked::postSolveAndSeparate);
+    for (int i = 0; i < 10; ++i) space.step(kTick<S>);
+    EXPECT_GT(space.body(bodyOf(space, box)).velocity().y, speed * ratio<S>(1, 2)) << handled;
+  }
+}
+
 }  // namespace
 }  // namespace samestep

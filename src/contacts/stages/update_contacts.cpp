@@ -45,7 +45,7 @@ void UpdateContacts<S>::collidePairs(StepContext<S>& step, const std::uint8_t* o
   }
   mendSeams_.run(step, found_);
   step.pay(0);
-  decidePairs(step, surfacesKnown && !handled, decidesLater(step));
+  decidePairs(step, decidesLater(step));
   // What callbacks have set is for this step.
   step.derived.surfacesKnown = !handled;
 }
@@ -107,7 +107,7 @@ bool UpdateContacts<S>::collideRange(StepContext<S>& step, const std::uint8_t* o
       pair.manifold = Manifold::unknown;
     }
     if (!later && (found & ContactFound::kSeam) == 0) {
-      if ((found & ContactFound::kNear) != 0 && pair.solved == 0) decide(step, pair, surfacesKnown, found);
+      if ((found & ContactFound::kNear) != 0 && pair.solved == 0) decide(step, pair);
       if (hasLeft(pair)) {
         found |= ContactFound::kLeft;
         someLeft = true;
@@ -155,6 +155,10 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
     if (info.count == 0) return 0;
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
   }
+  // Now, even if nothing meets in this step: another may take the contact as it is.
+  if (!same || !deciding.surfacesKnown) {
+    takeSurfaces(pair, derived.surfaces[shapeA.surface], derived.surfaces[shapeB.surface], {});
+  }
   const bool movesA = bodyA.type == BodyType::dynamicBody, movesB = bodyB.type == BodyType::dynamicBody;
   // What held something in the last step need not be asked.
   const bool holds = pair.contacts[0].normalSpeed + pair.contacts[1].normalSpeed != S(0);
@@ -168,8 +172,6 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
   const bool seam = !sensor && (movesA != movesB || (movesA && compound));
   if (deciding.now && soft && !seam && movesA && movesB && shapeA.surface == shapeB.surface &&
       pair.state != ArbiterState::ignored) {
-    const Surface<S>& surface = derived.surfaces[shapeA.surface];
-    if (!same || !deciding.surfacesKnown) takeSurfaces(pair, surface, surface, {});
     pair.solved = meeting == Meeting::later ? kSolvedApart : 1;
     if (meeting == Meeting::now) noteTouch(pair);
   }
@@ -204,11 +206,11 @@ typename UpdateContacts<S>::Meeting UpdateContacts<S>::meetsInStep(const StepCon
 /// those after it not.
 /// @param all  whether none was decided
 template <Scalar S>
-void UpdateContacts<S>::decidePairs(StepContext<S>& step, bool surfacesKnown, bool all) {
+void UpdateContacts<S>::decidePairs(StepContext<S>& step, bool all) {
   const auto decideOne = [&](std::uint32_t i) {
     Pair<S>& pair = step.state.pairs[i];
     // Of those at seams some have no contact any more.
-    if ((found_[i] & ContactFound::kNear) != 0) decide(step, pair, surfacesKnown, found_[i]);
+    if ((found_[i] & ContactFound::kNear) != 0) decide(step, pair);
     if (!hasLeft(pair)) return;
     found_[i] |= ContactFound::kLeft;
     someLeft_ = true;
@@ -230,18 +232,15 @@ bool UpdateContacts<S>::hasLeft(const Pair<S>& pair) {
   return pair.solved == 0 && pair.age != 0 && pair.state != ArbiterState::apart;
 }
 
-/// Takes what the surfaces of a pair say, and decides whether it is solved.
-/// @param surfacesKnown  whether pairs that are not fresh have it from the last step
+/// Decides whether a pair is solved.
 template <Scalar S>
-void UpdateContacts<S>::decide(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown, std::uint8_t found) {
+void UpdateContacts<S>::decide(StepContext<S>& step, Pair<S>& pair) {
   const Derived<S>& derived = step.derived;
   const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
   const PlacedPose<S>&bodyA = derived.poses[shapeA.body], &bodyB = derived.poses[shapeB.body];
   const Surface<S>&surfaceA = derived.surfaces[shapeA.surface], &surfaceB = derived.surfaces[shapeB.surface];
-  const bool belt = shapeA.surface != shapeB.surface && surfaceA.velocity != surfaceB.velocity;
-  if (!surfacesKnown || belt || (found & ContactFound::kFresh) != 0) {
-    const Vector<S> normal = belt ? rotate(pair.localNormal, bodyA.frame.rotation) : Vector<S>();
-    takeSurfaces(pair, surfaceA, surfaceB, normal);
+  if (shapeA.surface != shapeB.surface && surfaceA.velocity != surfaceB.velocity) {
+    takeSurfaces(pair, surfaceA, surfaceB, rotate(pair.localNormal, bodyA.frame.rotation));
   }
   const bool moves = bodyA.type == BodyType::dynamicBody || bodyB.type == BodyType::dynamicBody;
   const bool solvable = moves && !shapeA.sensor && !shapeB.sensor;

@@ -45,8 +45,8 @@ class UpdateContacts {
   static std::uint8_t collidePair(const StepContext<S>& step, Pair<S>& pair, const Deciding& deciding,
                                   CollisionStats& stats);
   static Meeting meetsInStep(const StepContext<S>& step, Pair<S>& pair);
-  void decidePairs(StepContext<S>& step, bool surfacesKnown, bool all);
-  static void decide(StepContext<S>& step, Pair<S>& pair, bool surfacesKnown, std::uint8_t found);
+  void decidePairs(StepContext<S>& step, bool all);
+  static void decide(StepContext<S>& step, Pair<S>& pair);
   static void touch(StepContext<S>& step, Pair<S>& pair, bool solvable);
   static bool hasLeft(const Pair<S>& pair);
   /// Takes over a collision and asks the callbacks: whether the pair shall be solved. MIS: arbiterUpdate
