@@ -12,8 +12,8 @@ struct SavedParts;
 
 /// A world kept in memory, by Space::save: its state, packed, and what its Space had computed from it that
 /// the next step would have to compute again. What a step leaves for callbacks and visits alone (impulses,
-/// and the materials that callbacks set for a step) is not kept. Reusing one makes saving free of allocation. One
-/// into which a save failed holds nothing.
+/// and the materials that callbacks set for a step) is not kept. Reusing one makes saving free of allocation.
+/// One into which a save failed holds nothing.
 template <Scalar S>
 class SavedSpace {
  public:
