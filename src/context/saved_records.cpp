@@ -203,7 +203,7 @@ std::uint64_t SavedRecords<S>::bytes() const {
 }
 
 template <Scalar S>
-void SavedRecords<S>::requireCallbacks(const Wiring<S>& wiring) const {
+void SavedRecords<S>::requireCallbacks(const SpaceWiring<S>& wiring) const {
   for (const CallbackNumber number : handlers_) {
     require<Fault::MissingCallback>(wiring.has(number), "no handler is registered under ", number);
   }

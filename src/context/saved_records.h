@@ -28,7 +28,7 @@ class SavedRecords {
   std::uint64_t stamp() const { return empty() ? 0 : stamp_; }
   std::uint64_t bytes() const;
   /// @throws MissingCallback where a function that the world needs is not registered
-  void requireCallbacks(const Wiring<S>& wiring) const;
+  void requireCallbacks(const SpaceWiring<S>& wiring) const;
 
  private:
   std::uint64_t stamp_ = 0;

@@ -18,7 +18,7 @@ struct StepContext {
   Space<S>& space;  ///< For callbacks, which are handed it.
   WorldState<S>& state;
   Derived<S>& derived;
-  Wiring<S>& wiring;
+  SpaceWiring<S>& wiring;
   Crew& team;
   StepEvents<S>& events;
   bool& leftMidway;  ///< See Change.

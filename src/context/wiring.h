@@ -67,7 +67,7 @@ class BoundHandlers {
 /// What a Space is connected to: functions under their numbers, the kernel, workers, the limit of pairs. No
 /// saved world carries it, and no result depends on it but what functions do and what is refused.
 template <Scalar S>
-struct Wiring {
+struct SpaceWiring {
   template <class Function>
   struct Registered {
     CallbackNumber number;

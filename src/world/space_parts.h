@@ -14,7 +14,7 @@ namespace samestep {
 template <Scalar S>
 struct SpaceParts {
   Derived<S> derived;
-  Wiring<S> wiring;
+  SpaceWiring<S> wiring;
   Crew team;
   StepEvents<S> events;
   Step<S> step;

@@ -32,7 +32,7 @@ namespace {
 
 /// @throws ForeignWorld, MissingCallback
 template <Scalar S>
-void checkAdoptable(const Wiring<S>& wiring, const WorldState<S>& state) {
+void checkAdoptable(const SpaceWiring<S>& wiring, const WorldState<S>& state) {
   require<Fault::ForeignWorld>(state.bodies.contains(state.staticBody), "Nothing was saved there.");
   for (const HandlerBinding& binding : state.handlers) {
     require<Fault::MissingCallback>(wiring.has(binding.number),

@@ -49,8 +49,8 @@ void Space<S>::registerHandler(CallbackNumber number, const CollisionHandler<S>&
   require<Fault::SpaceLocked>(locked_ == 0);
   require<Fault::ValueOutOfRange>(number != 0,
                                   "Space::registerHandler: number is 0, allowed are 1 and above");
-  Wiring<S>& wiring = parts_->wiring;
-  Wiring<S>::set(wiring.handlers, typename Wiring<S>::RegisteredHandler{number, handler});
+  SpaceWiring<S>& wiring = parts_->wiring;
+  SpaceWiring<S>::set(wiring.handlers, typename SpaceWiring<S>::RegisteredHandler{number, handler});
   wiring.bound.take(state_.handlers, wiring.handlers);
 }
 
@@ -58,14 +58,14 @@ template <Scalar S>
 void Space<S>::registerPositionFunc(CallbackNumber number, PositionFunc function, void* data) {
   require<Fault::SpaceLocked>(locked_ == 0);
   requireFunction(number, function != nullptr, "Space::registerPositionFunc: number ");
-  Wiring<S>::set(parts_->wiring.positionFuncs, {number, function, data});
+  SpaceWiring<S>::set(parts_->wiring.positionFuncs, {number, function, data});
 }
 
 template <Scalar S>
 void Space<S>::registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data) {
   require<Fault::SpaceLocked>(locked_ == 0);
   requireFunction(number, function != nullptr, "Space::registerVelocityFunc: number ");
-  Wiring<S>::set(parts_->wiring.velocityFuncs, {number, function, data});
+  SpaceWiring<S>::set(parts_->wiring.velocityFuncs, {number, function, data});
 }
 
 namespace {

@@ -22,7 +22,7 @@ void Integrate<S>::check(const StepContext<S>& step) {
 template <Scalar S>
 void Integrate<S>::callPositionFunc(StepContext<S>& step, std::uint32_t index) {
   Body<S>& body = step.state.bodies.valueAt(index);
-  const auto* entry = Wiring<S>::find(step.wiring.positionFuncs, body.positionFunc());
+  const auto* entry = SpaceWiring<S>::find(step.wiring.positionFuncs, body.positionFunc());
   {
     const typename BodyAccess<S>::WithinStep within(body, step.events.held[index]);
     entry->function(body, step.dt, entry->data);
@@ -33,7 +33,7 @@ void Integrate<S>::callPositionFunc(StepContext<S>& step, std::uint32_t index) {
 template <Scalar S>
 void Integrate<S>::callVelocityFunc(StepContext<S>& step, std::uint32_t index, S kept) {
   Body<S>& body = step.state.bodies.valueAt(index);
-  const auto* entry = Wiring<S>::find(step.wiring.velocityFuncs, body.velocityFunc());
+  const auto* entry = SpaceWiring<S>::find(step.wiring.velocityFuncs, body.velocityFunc());
   {
     const typename BodyAccess<S>::WithinStep within(body, step.events.held[index]);
     entry->function(body, step.state.settings.gravity, kept, step.dt, entry->data);
