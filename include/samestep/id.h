@@ -58,6 +58,7 @@ struct LocalId {
   std::uint32_t generation = 0;
 
   constexpr LocalId() = default;
+  constexpr LocalId(std::uint32_t slot, std::uint32_t uses) : index(slot), generation(uses) {}
   constexpr LocalId(const Id<Tag>& id) : index(id.index), generation(id.generation) {}
   constexpr operator Id<Tag>() const {
     Id<Tag> id;
@@ -68,6 +69,7 @@ struct LocalId {
   constexpr bool valid() const { return index != Id<Tag>::kNoIndex; }
 
   friend constexpr bool operator==(const LocalId& a, const LocalId& b) = default;
+  friend constexpr auto operator<=>(const LocalId& a, const LocalId& b) = default;
   friend constexpr bool operator==(const LocalId& a, const Id<Tag>& b) { return Id<Tag>(a) == b; }
 };
 

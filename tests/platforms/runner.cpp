@@ -161,7 +161,7 @@ std::uint64_t hashOfGame() {
     random = random * 6364136223846793005u + 1442695040888963407u;
     return static_cast<double>(static_cast<std::int64_t>(random >> 12)) / 4503599627370496.0 - 0.5;
   };
-  Pair vectors[kCount];
+  ::Pair vectors[kCount];
   double a[kCount], b[kCount], out[4];
   for (int i = 0; i < kCount; ++i) {
     vectors[i] = {next(), next()};
@@ -180,7 +180,7 @@ std::uint64_t hashOfGame() {
     keep(sum(a, b, kCount));
     for (const double value : out) keep(value);
     for (int i = 0; i < kCount; ++i) a[i] = next();
-    for (Pair& vector : vectors) {
+    for (::Pair& vector : vectors) {
       keep(vector.x);
       vector = {vector.x + next(), vector.y + next()};
     }
