@@ -23,7 +23,9 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
   return value ^ value >> 31;
 }
 
+#ifndef SAMESTEP_FIXED_ONLY
 std::uint64_t bitsOf(double value) { return std::bit_cast<std::uint64_t>(value); }
+#endif
 std::uint64_t bitsOf(Fixed value) { return static_cast<std::uint64_t>(value.raw()); }
 
 }  // namespace
