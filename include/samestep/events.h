@@ -11,7 +11,8 @@ namespace samestep {
 
 /// What a collision handler does. A null function does what the wildcard handlers of both shapes do, or
 /// nothing. begin and preSolve answer whether the shapes shall collide: begin for as long as they touch,
-/// preSolve for this step.
+/// preSolve for this step. What they throw comes out of the step or removal and leaves the world midway, see
+/// Space; so it is with the functions and the observer below.
 ///
 /// Shapes touch in a step that finds them overlapping or just meeting, to 2^-20 m, or, in the soft step, in
 /// which their contact pushes; shapes that are only within Settings::contactMargin do not. begin is called

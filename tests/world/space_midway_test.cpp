@@ -239,6 +239,28 @@ TYPED_TEST(SpaceMidwayTest, ASpaceDoesNoMoreWorkThanItMay) {
   EXPECT_EQ(hashesOf(space, 5), hashesOf(model, 5));
 }
 
+// docs/formats.md, "From strangers". Nearly all pairs share bodies, so that each is alone in its block.
+TYPED_TEST(SpaceMidwayTest, AStepDoesNoMoreWorkForAPairThanIsDocumented) {
+  using S = TypeParam;
+  constexpr int kPasses = 7;
+  for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {
+    Space<S> space;
+    space.setSolver(solver);
+    space.setSubsteps(kPasses);
+    space.setIterations(kPasses);
+    for (int i = 0; i < 200; ++i) addBox<S>(space, {}, S(1), S(1), S(i % 2 == 0 ? 1000000 : 1));
+    for (int i = 0; i < 3; ++i) {
+      const std::uint64_t before = space.work();
+      space.step(kTick<S>);
+      const std::uint64_t pairs = space.state().pairs.size();
+      ASSERT_EQ(pairs, 200u * 199u / 2u);
+      const std::uint64_t ofPasses = (solver == SolverKind::softStep ? 160 : 8) * kPasses;
+      EXPECT_LE(space.work() - before, pairs * (100 + ofPasses)) << i;
+      EXPECT_GE(space.work() - before, pairs * 32) << i;
+    }
+  }
+}
+
 TYPED_TEST(SpaceMidwayTest, TheRemovalOfABodyOfManyShapesIsInterrupted) {
   using S = TypeParam;
   Space<S> space;

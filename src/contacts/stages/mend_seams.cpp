@@ -2,7 +2,6 @@
 #include "contacts/stages/mend_seams.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/require_ieee.h"
 #include "contacts/push_contacts.h"
@@ -33,6 +32,7 @@ template <Scalar S>
 void MendSeams<S>::run(StepContext<S>& step, std::vector<std::uint8_t>& found) {
   collect(step, found);
   changes_.clear();
+  judged_ = 0;
   const std::span<const Side> all(sides_);
   for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
     end = begin + 1;
@@ -81,12 +81,10 @@ void MendSeams<S>::judge(const StepContext<S>& step, const std::vector<std::uint
     contacts_.add(seamContactOf(step.derived, step.state.pairs[side.pair], side.shape), side.pair);
   }
   contacts_.sort();
-  std::uint64_t looked = 0;
   for (std::uint32_t i = 0; i < contacts_.size(); ++i) {
     const std::uint32_t pair = contacts_.numberOf(i);
     if ((found[pair] & ContactFound::kFresh) == 0) continue;
-    looked += contacts_.size();
-    if (looked >= 16 * Budget::kPairsAtOnce) step.wiring.budget.pay(std::exchange(looked, 0));
+    if (++judged_ % kJudgedAtOnce == 0) step.wiring.budget.pay(Budget::kPerPair * kJudgedAtOnce);
     Change change{pair, step.state.pairs[pair].a.index == sides.front().shape, SeamVerdict::stays, {}};
     change.verdict = judgeSeam<S>(contacts_, i, step.pairMargin(), change.info);
     if (change.verdict != SeamVerdict::stays) changes_.push_back(change);

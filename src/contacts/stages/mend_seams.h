@@ -45,6 +45,8 @@ class MendSeams {
     CollisionInfo<S> info;
   };
   static constexpr std::uint32_t kStatic = 0xffffffffu;
+  // Among thousands that lie over each other each takes a while.
+  static constexpr std::uint32_t kJudgedAtOnce = 16;
 
   void collect(const StepContext<S>& step, const std::vector<std::uint8_t>& found);
   void addSide(const StepContext<S>& step, std::uint32_t pair, bool ofA);
@@ -57,6 +59,7 @@ class MendSeams {
   std::vector<Side> sides_;
   SeamContacts<S> contacts_;
   std::vector<Change> changes_;
+  std::uint32_t judged_ = 0;
 };
 
 #define SAMESTEP_EACH_SCALAR extern template class MendSeams<S>;
