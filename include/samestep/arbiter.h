@@ -102,6 +102,12 @@ struct Pair {
   S elasticity{};
   S friction{};
   Vector<S> surfaceVelocity{};
+  /// What the solver of the last step did, 0 where nothing was solved. No state: only callbacks and visits
+  /// read it. The impulse on b, as the change of speed of the lighter body, m/s; along which normal, from a
+  /// to b in the world; and how b's body stood turned then (cosine, sine).
+  Vector<S> solvedImpulse{};
+  Vector<S> solvedNormal{};
+  Vector<S> solvedTurn{};
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -165,17 +171,18 @@ class Arbiter {
 
   /// How many points touch: 1 or 2, or 0 in separate. MIS: arbiterGetCount
   int count() const { return pair_.state == ArbiterState::cached ? 0 : pair_.count; }
-  /// From A to B, a unit vector; as the points it follows the bodies. MIS: arbiterGetNormal
+  /// From A to B, a unit vector: in postSolve and in visits between steps the one that the solver pushed
+  /// along, before that the one the shapes were collided with, which follows A. MIS: arbiterGetNormal
   Vector<S> normal() const;
-  /// On the surface of A, world coordinates, m: fixed to A since the shapes were last collided, and so where
-  /// A stands now.
+  /// On the surface of A, world coordinates, m: it goes where A goes since the shapes were last collided, and
+  /// stands where A stands now; where A is rounded, it stays on the side towards the normal, however A turns.
   /// @throws ContactIndexOutOfBounds
   /// MIS: arbiterGetPointA
   Vector<S> pointA(int index) const;
   /// @throws ContactIndexOutOfBounds
   /// MIS: arbiterGetPointB
   Vector<S> pointB(int index) const;
-  /// Along the normal, m; negative where the shapes overlap.
+  /// Along the normal, where the bodies stand now, m; negative where the shapes overlap.
   /// @throws ContactIndexOutOfBounds
   /// MIS: arbiterGetDepth
   S depth(int index) const;
@@ -199,9 +206,10 @@ class Arbiter {
   }
   bool ignored() const { return pair_.state == ArbiterState::ignored; }
 
-  /// The impulse of the last step on B, friction included, N s, saturated. It is a result and no state: 0 in
-  /// a step until it is solved, so in begin, preSolve and separate, and 0 after a restore or load until the
-  /// next step. MIS: arbiterTotalImpulse
+  /// The impulse of the last step on B, friction included, N s, saturated: what the contact changed of B's
+  /// momentum, and of A's with the other sign, all substeps together. It is a result and no state: 0 in a step
+  /// until it is solved, so in begin, preSolve and separate, and 0 after a restore or load until the next
+  /// step. MIS: arbiterTotalImpulse
   Vector<S> totalImpulse() const;
   /// As in Chipmunk, the sum over the points of jn^2 / nMass (1 - e) / (1 + e) + jt^2 / tMass: twice what an
   /// impact takes from the kinetic energy, J, saturated; 0 where nothing was solved.
@@ -214,6 +222,12 @@ class Arbiter {
 
  private:
   friend struct ContactCallbacks<S>;
+
+  bool isSolved() const { return pair_.solvedNormal != Vector<S>(); }
+  /// From the first body of the pair to the second.
+  Vector<S> pairNormal() const;
+  /// On the surface of the first or the second body.
+  Vector<S> surfacePoint(int body, int index) const;
 
   Pair<S>& pair_;
   Body<S>* bodies_[2];

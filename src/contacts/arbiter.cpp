@@ -31,25 +31,37 @@ void Arbiter<S>::setSurfaceVelocity(const Vector<S>& velocity) {
 }
 
 template <Scalar S>
+Vector<S> Arbiter<S>::pairNormal() const {
+  return isSolved() ? pair_.solvedNormal : worldNormal(pair_, *bodies_[0]);
+}
+
+template <Scalar S>
 Vector<S> Arbiter<S>::normal() const {
-  const Vector<S> n = worldNormal(pair_, *bodies_[0]);
-  return swapped_ ? -n : n;
+  return swapped_ ? -pairNormal() : pairNormal();
+}
+
+template <Scalar S>
+Vector<S> Arbiter<S>::surfacePoint(int body, int index) const {
+  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count(), "Arbiter: contact ", index,
+                                          " is asked for, of contacts there are ", count());
+  const Contact<S>& contact = pair_.contacts[index];
+  const Vector<S>& anchor = body == 0 ? contact.anchorA : contact.anchorB;
+  const S radius = shapes_[body]->radius();
+  if (!isSolved() || radius == S(0)) return bodies_[body]->toWorld(anchor);
+  // What is round turns below its point.
+  const Vector<S> before = body == 0 ? pair_.localNormal : unrotate(pair_.solvedNormal, pair_.solvedTurn);
+  const S outward = body == 0 ? radius : -radius;
+  return bodies_[body]->toWorld(anchor - before * outward) + pair_.solvedNormal * outward;
 }
 
 template <Scalar S>
 Vector<S> Arbiter<S>::pointA(int index) const {
-  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count(), "Arbiter: contact ", index,
-                                          " is asked for, of contacts there are ", count());
-  const Contact<S>& contact = pair_.contacts[index];
-  return swapped_ ? bodies_[1]->toWorld(contact.anchorB) : bodies_[0]->toWorld(contact.anchorA);
+  return surfacePoint(swapped_ ? 1 : 0, index);
 }
 
 template <Scalar S>
 Vector<S> Arbiter<S>::pointB(int index) const {
-  require<Fault::ContactIndexOutOfBounds>(index >= 0 && index < count(), "Arbiter: contact ", index,
-                                          " is asked for, of contacts there are ", count());
-  const Contact<S>& contact = pair_.contacts[index];
-  return swapped_ ? bodies_[0]->toWorld(contact.anchorA) : bodies_[1]->toWorld(contact.anchorB);
+  return surfacePoint(swapped_ ? 0 : 1, index);
 }
 
 template <Scalar S>
@@ -106,6 +118,7 @@ void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
     contact.anchorB = bodies_[1]->toLocal(swapped_ ? set.points[i].pointA : set.points[i].pointB);
   }
   pair_.manifold = Manifold::unknown;
+  pair_.solvedNormal = {};
 }
 
 namespace {
@@ -120,16 +133,10 @@ Scaled<S> lighterMass(const Body<S>& a, const Body<S>& b) {
 
 template <Scalar S>
 Vector<S> Arbiter<S>::totalImpulse() const {
-  Scaled<S> x{}, y{};
-  const Vector<S> n = worldNormal(pair_, *bodies_[0]);
-  for (int i = 0; i < count(); ++i) {
-    const Contact<S>& contact = pair_.contacts[i];
-    const Vector<S> speed = rotate(n, Vector<S>(contact.normalTotal, contact.tangentTotal));
-    x = x + toScaled(speed.x);
-    y = y + toScaled(speed.y);
-  }
+  if (count() == 0) return {};
   const Scaled<S> mass = lighterMass(*bodies_[0], *bodies_[1]);
-  const Vector<S> impulse(saturated<S>(x * mass), saturated<S>(y * mass));
+  const Vector<S>& speed = pair_.solvedImpulse;
+  const Vector<S> impulse(saturated<S>(toScaled(speed.x) * mass), saturated<S>(toScaled(speed.y) * mass));
   return swapped_ ? -impulse : impulse;
 }
 
@@ -139,13 +146,13 @@ S Arbiter<S>::totalKE() const {
   const Body<S>& a = *bodies_[0];
   const Body<S>& b = *bodies_[1];
   const PairResponse<S> whole = respond(a, b);
-  const Vector<S> n = worldNormal(pair_, a);
+  const Vector<S> n = pairNormal();
   const Vector<S> t = perp(n);
   const S loss = (S(1) - pair_.elasticity) / (S(1) + pair_.elasticity);
   Scaled<S> sum{};
   for (int i = 0; i < count(); ++i) {
     const Contact<S>& contact = pair_.contacts[i];
-    const auto [armA, armB, separation] = contactArms(contact, n, a, b);
+    const Vector<S> armA = surfacePoint(0, i) - a.worldCenter(), armB = surfacePoint(1, i) - b.worldCenter();
     const PairResponse<S> response = whole.at(armA, armB);
     const Scaled<S> normalK = toScaled(effectiveInverseMass(response, cross(armA, n), cross(armB, n)));
     const Scaled<S> tangentK = toScaled(effectiveInverseMass(response, cross(armA, t), cross(armB, t)));

@@ -41,6 +41,7 @@ void forgetResults(Pair<S>& pair) {
   for (Contact<S>& contact : pair.contacts) contact.normalTotal = contact.tangentTotal = S(0);
   pair.elasticity = pair.friction = S(0);
   pair.surfaceVelocity = {};
+  pair.solvedImpulse = pair.solvedNormal = pair.solvedTurn = {};
   pair.solved = 0;
 }
 

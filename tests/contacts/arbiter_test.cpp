@@ -389,6 +389,7 @@ TYPED_TEST(ArbiterTest, GettersSaturateAtTheEndsOfTheRanges) {
     contact.anchorA += Vector<S>(S(200), S(200));
     contact.anchorB -= Vector<S>(S(200), S(200));
   }
+  pair.solvedImpulse = {S(1 << 21), S(1 << 21)};
   Body<S> a(kMaxMass<S>, kMinMoment<S>);
   Body<S> b(kMaxMass<S>, kMinMoment<S>);
   a.setPosition({S(-200), S(-200)});

@@ -91,7 +91,7 @@ TYPED_TEST(ImpulseSolverTest, TheLargestKeptImpulsesStayInRange) {
     body.biasAngularVelocity = kMaxAngularSpeed<S>;
   }
   EXPECT_NO_THROW({
-    for (const ImpulseRow<S>& row : this->solver_.rows) this->solver_.warmStart(row, S(1));
+    for (ImpulseRow<S>& row : this->solver_.rows) this->solver_.warmStart(row, S(1));
     for (int i = 0; i < 100; ++i) this->solver_.iterate();
   });
   if constexpr (kIsFixed<S>) {

@@ -67,7 +67,8 @@ TYPED_TEST(FieldsTest, FieldsAccountForEveryByte) {
             sizeof(Shape<S>) + Shape<S>::kBytesOutside);
   constexpr std::size_t kTotals = 2 * sizeof(S), kContactFiller = 4;
   EXPECT_EQ(leavesOf(Contact<S>()).bytes() + kTotals + kContactFiller, sizeof(Contact<S>));
-  constexpr std::size_t kGenerations = 8, kSurfaces = 2 * sizeof(S) + sizeof(Vector<S>), kSolved = 1;
+  constexpr std::size_t kGenerations = 8, kSurfaces = 2 * sizeof(S) + sizeof(Vector<S>),
+                        kSolved = 1 + 3 * sizeof(Vector<S>);
   EXPECT_EQ(leavesOf(Pair<S>()).bytes() + kMaxContactsPerPair * (kTotals + kContactFiller) + kGenerations +
                 kSurfaces + kSolved,
             sizeof(Pair<S>));

@@ -95,6 +95,7 @@ bool UpdateContacts<S>::collideRange(StepContext<S>& step, const std::uint8_t* o
     Pair<S>& pair = step.state.pairs[i];
     if (pair.state == ArbiterState::firstCollision) pair.state = ArbiterState::normal;
     pair.solved = 0;
+    pair.solvedImpulse = pair.solvedNormal = {};
     if (pair.state != ArbiterState::apart) {
       if (pair.age != 0xffffffffu) ++pair.age;
       // No callback before the solver's end may see an impulse of the step before: a saved world has none.

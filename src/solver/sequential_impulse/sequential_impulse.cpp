@@ -59,6 +59,8 @@ void ImpulseSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
     row.bodyA = indexA;
     row.bodyB = indexB;
     prepareAxes(pair, contact, response, a, b, row);
+    row.normalLacks = row.normalSum;
+    row.tangentLacks = row.tangentSum;
     const S overlap = clamp(-(row.separation + slop), S(0), S(1 << 10));
     row.bias = min(overlap * biasRate, kMaxSpeed<S>);
     row.bounce = pair.elasticity *
@@ -67,11 +69,13 @@ void ImpulseSolver<S>::preStep(const Pair<S>& pair, std::uint32_t indexA, std::u
 }
 
 template <Scalar S>
-void ImpulseSolver<S>::warmStart(const ImpulseRow<S>& row, S dtCoefficient) {
+void ImpulseSolver<S>::warmStart(ImpulseRow<S>& row, S dtCoefficient) {
   ImpulseBody<S>& a = bodies[row.bodyA];
   ImpulseBody<S>& b = bodies[row.bodyB];
   const S normal = min(row.normalSum * dtCoefficient, kMaxSum<S>);
   const S tangent = clamp(row.tangentSum * dtCoefficient, -kMaxSum<S>, kMaxSum<S>);
+  row.normalLacks = row.normalSum - normal;
+  row.tangentLacks = row.tangentSum - tangent;
   answer(row, normal, tangent, a.velocity, a.angularVelocity, b.velocity, b.angularVelocity);
   if constexpr (kIsFixed<S>) {
     for (ImpulseBody<S>* body : {&a, &b}) holdAt(*body, kMostGiven<S>, kMostGiven<S>);

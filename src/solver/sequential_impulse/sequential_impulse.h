@@ -26,6 +26,8 @@ struct ImpulseRow : ContactAxes<S> {
   S bias{}, bounce{};
   /// Accumulated u for the bias velocities.
   S biasSum{};
+  /// What bodies were given at first less than the sums said, u.
+  S normalLacks{}, tangentLacks{};
 };
 
 template <Scalar S>
@@ -39,7 +41,7 @@ struct ImpulseSolver {
   void preStep(const Pair<S>& pair, std::uint32_t indexA, std::uint32_t indexB, const Body<S>& a,
                const Body<S>& b, S slop, S biasRate);
   /// Applies the impulses kept from the last step, times dtCoefficient. MIS: arbiterApplyCachedImpulse
-  void warmStart(const ImpulseRow<S>& row, S dtCoefficient);
+  void warmStart(ImpulseRow<S>& row, S dtCoefficient);
   /// One pass over all rows. MIS: arbiterApplyImpulse
   void iterate();
 };

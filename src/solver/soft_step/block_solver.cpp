@@ -529,6 +529,27 @@ void BlockSolver<S, N>::store(std::vector<Pair<S>>& pairs, Crew& crew) const {
   });
 }
 
+/// Writes what the contacts of a pair gave its lighter body, by the directions that gave it.
+template <Scalar S, class N>
+void BlockSolver<S, N>::tellImpulse(std::uint32_t at, int lane, Pair<S>& pair) const {
+  const Block& block = blocks_[at];
+  const Rest& rest = rests_[at];
+  const auto shareA = block.shareA[lane];
+  auto x = block.pushAX[lane], y = block.pushAY[lane];
+  if (units_.larger(shareA) != shareA) {
+    x = block.normalX[lane] - x;
+    y = block.normalY[lane] - y;
+  }
+  S along = S(0), aside = S(0);
+  for (int k = 0; k < block.count[lane]; ++k) {
+    along += units_.fromSum(rest.normalTotal[k][lane]);
+    aside += units_.fromSum(rest.tangentTotal[k][lane]);
+  }
+  const Vector<S> push(units_.fromUnit(x), units_.fromUnit(y));
+  pair.solvedImpulse = rotate(push, Vector<S>(along, aside));
+  pair.solvedNormal = {units_.fromUnit(block.normalX[lane]), units_.fromUnit(block.normalY[lane])};
+}
+
 template <Scalar S, class N>
 void BlockSolver<S, N>::storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const {
   const Block& block = blocks_[at];
@@ -538,6 +559,7 @@ void BlockSolver<S, N>::storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs
     // The lighter body has the larger share.
     const auto share = units_.larger(block.shareA[lane]);
     Pair<S>& pair = pairs[rest.pair[lane]];
+    tellImpulse(at, lane, pair);
     const auto speedOf = [&](typename N::Sum sum) { return units_.perMass(share, sum); };
     for (int k = 0; k < block.count[lane]; ++k) {
       Contact<S>& contact = pair.contacts[k];

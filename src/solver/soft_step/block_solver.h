@@ -85,6 +85,7 @@ class BlockSolver {
   void markPushed(Block& block, int lane, const Pair<S>& pair, S overlap) const;
   void addPushes(std::uint32_t begin, std::uint32_t end);
   void takePushes(std::uint32_t begin, std::uint32_t end);
+  void tellImpulse(std::uint32_t at, int lane, Pair<S>& pair) const;
   void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
 
   const SoftSettings<S>* settings_ = nullptr;

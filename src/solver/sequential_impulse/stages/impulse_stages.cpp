@@ -97,9 +97,15 @@ void ImpulseStages<S>::storeImpulses(StepContext<S>& step) {
     for (int i = 0; i < pair.count; ++i, ++next) {
       const ImpulseRow<S>& row = solver_.rows[next];
       Contact<S>& contact = pair.contacts[i];
-      contact.normalSpeed = contact.normalTotal = row.normalSum * row.normalScale;
-      contact.tangentSpeed = contact.tangentTotal = row.tangentSum * row.tangentScale;
+      contact.normalSpeed = row.normalSum * row.normalScale;
+      contact.tangentSpeed = row.tangentSum * row.tangentScale;
+      contact.normalTotal = (row.normalSum - row.normalLacks) * row.normalScale;
+      contact.tangentTotal = (row.tangentSum - row.tangentLacks) * row.tangentScale;
+      pair.solvedNormal = row.normal;
+      pair.solvedImpulse += rotate(row.normal, Vector<S>(contact.normalTotal, contact.tangentTotal));
     }
+    pair.solvedTurn =
+        step.state.bodies.valueAt(step.state.shapes.valueAt(pair.b.index).body().index).rotation();
   }
 }
 

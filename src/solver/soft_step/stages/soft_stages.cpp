@@ -192,7 +192,7 @@ template <Scalar S>
 template <class Solver>
 bool SoftStages<S>::fillBlocks(StepContext<S>& step, Solver& solver) {
   Finding misfit, bounces, strikes, pushes;
-  const std::vector<Pair<S>>& pairs = step.state.pairs;
+  std::vector<Pair<S>>& pairs = step.state.pairs;
   const S bounceThreshold = step.state.settings.bounceThreshold;
   const auto fillBlock = [&](std::uint32_t block, std::uint32_t begin, std::uint32_t end) {
     const auto count = static_cast<int>(end - begin);
@@ -201,6 +201,7 @@ bool SoftStages<S>::fillBlocks(StepContext<S>& step, Solver& solver) {
     for (std::uint32_t i = begin; i < end; ++i) {
       fetchAhead(pairs, i);
       const SolvedPair& solved = solvedPairs_[groupOrder_[i]];
+      pairs[solved.pair].solvedTurn = soft_.frames[solved.b].rotation;
       misfit.note(!solver.addPair(block, static_cast<int>(i - begin), pairs[solved.pair], solved.pair,
                                   soft_.frames[solved.a], soft_.frames[solved.b], solved.roundA,
                                   solved.roundB, taken));
