@@ -105,6 +105,7 @@ void Player::notice() {
     }
   }
   if (!recording_ || !over()) return;
+  if (session_.desync() != nullptr) result_.words += "desync: " + desyncText(*session_.desync()) + "\n";
   recording_ = false;
   game_.finishRecording(options_.ticks);
   session_.leave();

@@ -25,8 +25,10 @@ class ArenaGame : public SimGame {
   void flip() override {
     auto& body = arena_.space().body(arena_.player(0));
     const Vector<Fixed> at = body.position();
-    body.setPosition({Fixed::fromRaw(at.x.raw() ^ 1), at.y});
+    body.setPosition({Fixed::fromRaw(at.x.raw() ^ std::int64_t{1} << 16), at.y});
   }
+  const Game* values() override { return &functions_; }
+  const char* flipped() const override { return "body 1"; }
 
  private:
   static void apply(Space<Fixed>& space, const TickInputs& inputs, void* data) {

@@ -51,6 +51,10 @@ struct MatchReport {
   /// Peers that told of a desync, bit by seat, and the tick they told it for first.
   std::uint32_t desynced = 0;
   Tick desyncTick = 0;
+  /// Peers that named the object in which a flip was planted, and who differs from most, bit by seat.
+  std::uint32_t named = 0;
+  /// What each peer found out about a desync.
+  std::vector<std::string> findings;
   /// What happened in the match, for the record of what seeds cover.
   std::uint32_t peers = 0;
   std::uint32_t survivors = 0;

@@ -26,6 +26,18 @@ Tick firstDrop(const Peer& reference) {
   return first;
 }
 
+/// By then each detector has compared hashes, and told.
+constexpr Tick kSeen = 120;
+
+/// Whether two peers had other states after each of so many steps: some faults heal.
+bool differFor(const Peer& a, const Peer& b, Tick from, Tick ticks) {
+  if (std::min(a.certain(), b.certain()) < from + ticks) return false;
+  for (Tick tick = from + 1; &a != &b && tick < from + ticks; ++tick) {
+    if (a.records()[tick].state == b.records()[tick].state) return false;
+  }
+  return true;
+}
+
 std::string nameOf(Tick seat) { return "peer " + std::to_string(seat); }
 
 }  // namespace
@@ -86,6 +98,15 @@ void Oracle::detector(const MatchOptions& options, const Oracle::Peers& peers, S
     report_.desynced |= 1u << seat;
     report_.desyncTick = report_.desyncTick == 0 ? event->tick : std::min(report_.desyncTick, event->tick);
   }
+  for (Seat seat = 0; seat < peers.size(); ++seat) {
+    const DesyncReport* found = peers[seat]->session().desync();
+    if (found == nullptr) continue;
+    report_.findings.push_back(nameOf(seat) + ": " + desyncText(*found));
+    // Of two, neither is most.
+    const std::uint32_t guilty = peers.size() > 2 ? 1u << plantedSeat : 0;
+    const bool named = std::string(found->ours.object) == peers[seat]->flipped() && found->minority == guilty;
+    if (named) report_.named |= 1u << seat;
+  }
   if (options.planted == Planted::none) {
     if (report_.desynced != 0) violate("a false desync at tick " + std::to_string(report_.desyncTick));
     return;
@@ -93,7 +114,7 @@ void Oracle::detector(const MatchOptions& options, const Oracle::Peers& peers, S
   if (!survives(*peers[plantedSeat]) || report_.violations.empty()) return;
   for (Seat seat = 0; seat < peers.size(); ++seat) {
     const Peer& peer = *peers[seat];
-    if (!survives(peer) || peer.certain() < plantedTick + 120) continue;
+    if (!survives(peer) || !differFor(peer, *peers[plantedSeat], plantedTick, kSeen)) continue;
     const bool sees =
         eventOf(peer, SessionEvent::Kind::desync, seat == plantedSeat ? kNoSeat : plantedSeat) != nullptr;
     if (!sees) violate(nameOf(seat) + " did not notice the desync");

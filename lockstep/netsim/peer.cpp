@@ -44,6 +44,16 @@ Peer::Peer(const SessionSettings& settings, const MatchOptions& options, Network
   game.load = [](std::uint32_t slot, void* data) { static_cast<Peer*>(data)->load(slot); };
   game.step = [](const TickInputs& inputs, void* data) { static_cast<Peer*>(data)->step(inputs); };
   game.hash = [](void* data) { return static_cast<Peer*>(data)->game_->hash(); };
+  if (game_->values() != nullptr) {
+    game.valueHashes = [](std::uint32_t slot, std::span<std::uint64_t> into, void* data) {
+      const Game* inner = static_cast<Peer*>(data)->game_->values();
+      return inner->valueHashes(slot, into, inner->data);
+    };
+    game.value = [](std::uint32_t slot, std::uint32_t index, GameValue& into, void* data) {
+      const Game* inner = static_cast<Peer*>(data)->game_->values();
+      inner->value(slot, index, into, inner->data);
+    };
+  }
   Transport transport;
   transport.data = this;
   transport.send = [](Address to, std::span<const std::uint8_t> bytes, void* data) {
@@ -61,7 +71,7 @@ Peer::Peer(const SessionSettings& settings, const MatchOptions& options, Network
     return size;
   };
   session_ = std::make_unique<Session>(settings, game, transport);
-  slots_.resize(kSaveSlots);
+  slots_.resize(kSaveSlots + kKeepSlots);
 }
 
 Time Peer::local(Time now) const {

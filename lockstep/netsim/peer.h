@@ -56,6 +56,8 @@ class Peer {
   std::uint32_t commandsGiven() const { return commandsGiven_; }
   std::uint32_t heldGiven() const { return heldGiven_; }
   const std::vector<SessionEvent>& events() const { return events_; }
+  /// The object in which a planted flip shows.
+  const char* flipped() const { return game_->flipped(); }
   /// The state that the game has is not what a sequence of loads and steps may lead to.
   bool misused() const { return misused_; }
 

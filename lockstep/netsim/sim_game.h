@@ -19,6 +19,10 @@ class SimGame {
   virtual std::uint64_t hash() = 0;
   /// Changes one bit of the state: a planted fault.
   virtual void flip() = 0;
+  /// The game whose Game::valueHashes and Game::value tell the values of kept states; null if it has none.
+  virtual const Game* values() { return nullptr; }
+  /// The object in which a flip shows.
+  virtual const char* flipped() const { return ""; }
 };
 
 /// One integer, mixed with every input.

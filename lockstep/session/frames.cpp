@@ -168,6 +168,7 @@ void Session::Impl::takeBackShown() {
 void Session::Impl::hashState() {
   if (settings.hashInterval == 0 || current % settings.hashInterval != 0) return;
   ownHashes.of(current, settings.hashInterval) = {current, game.hash(game.data)};
+  keepState();
 }
 
 /// Notes the hashes of states that are certain by now. Called only when no step is wrong.
@@ -191,10 +192,17 @@ void Session::Impl::compareHash(Seat seat, Tick tick) {
   if (ends[seat] < tick) return;
   const KeptHash& ours = hashes[settings.localSeat].of(tick, settings.hashInterval);
   const KeptHash& theirs = hashes[seat].of(tick, settings.hashInterval);
-  if (ours.tick != tick || theirs.tick != tick || ours.hash == theirs.hash || (desynced & bit(seat)) != 0)
-    return;
-  desynced |= bit(seat);
-  tell({SessionEvent::Kind::desync, seat, 0, tick, ours.hash, theirs.hash});
+  if (ours.tick != tick || theirs.tick != tick) return;
+  DesyncReport& report = locating.report;
+  if (ours.hash != theirs.hash) {
+    if (report.first == 0) report.first = tick;
+    if ((desynced & bit(seat)) == 0)
+      tell({SessionEvent::Kind::desync, seat, 0, tick, ours.hash, theirs.hash});
+    desynced |= bit(seat);
+    beginLocating(seat, tick);
+  }
+  // Who differs shows when all have told.
+  if (report.first == tick) report.minority = minorityAt(tick);
 }
 
 /// Smooths by how much each peer is behind.

@@ -45,6 +45,7 @@ void Session::Impl::poll(std::uint64_t time) {
   watchLinks();
   if (state == SessionState::running) {
     sendWants();
+    locate();
     agree();
     finishLeaving();
   }
@@ -77,7 +78,7 @@ void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
   const std::uint16_t match = reader.u16();
   const std::uint8_t view = reader.u8();
   const auto type = static_cast<Packet>(first & 15);
-  if (!reader.good() || type > Packet::hashes || seat >= settings.players || !remote(seat) ||
+  if (!reader.good() || type > Packet::answer || seat >= settings.players || !remote(seat) ||
       settings.addresses[seat] != from || match != static_cast<std::uint16_t>(settings.match)) {
     return bad();
   }
@@ -123,6 +124,10 @@ void Session::Impl::receiveFrom(Seat seat, Packet type, std::uint8_t flags, Pack
       return receiveBackfill(reader);
     case Packet::hashes:
       return receiveHashes(seat, reader);
+    case Packet::ask:
+      return receiveAsk(seat, reader);
+    case Packet::answer:
+      return receiveAnswer(seat, reader);
     default:
       return bad();
   }

@@ -133,6 +133,9 @@ Tick Session::tick() const { return impl_->current; }
 Tick Session::confirmed() const { return impl_->certain; }
 std::uint16_t Session::present() const { return impl_->live(); }
 const SessionStats& Session::stats() const { return impl_->stats; }
+const DesyncReport* Session::desync() const {
+  return impl_->locating.report.first == 0 ? nullptr : &impl_->locating.report;
+}
 
 std::uint32_t Session::frameLength() const {
   // Each of two peers makes up for half of what the other is behind. Compared are the two sides' own views,

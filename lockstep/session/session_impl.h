@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the parts of a Session share. Its subjects: session.cpp (settings and questions), frames.cpp (steps,
-// saves and rollbacks), packets.cpp (what is sent and received), agreement.cpp (who is dropped).
+// saves and rollbacks), packets.cpp (what is sent and received), agreement.cpp (who is dropped), locate.cpp
+// (what differs after a desync).
 #pragma once
 
 #include <samestep/session.h>
@@ -28,6 +29,8 @@ enum class Packet : std::uint8_t {
   want = 8,      ///< Asks for inputs of a dropped player.
   backfill = 9,  ///< Answers with them.
   hashes = 10,   ///< Of certain states.
+  ask = 11,      ///< After a desync: asks for the hashes of the parts of a part of a state.
+  answer = 12,
 };
 inline constexpr std::uint32_t kProtocol = 1;
 inline constexpr Tick kNever = 0xffffffffu;
@@ -49,6 +52,7 @@ struct Link {
   std::uint64_t lastHeard = 0;
   std::uint64_t lastSent = 0;
   std::uint64_t lastCommit = 0;
+  std::uint64_t lastAnswered = 0;
   /// Of our inputs: the tick after the last one that it has.
   Tick acked = 0;
   /// Its newest known step.
@@ -67,6 +71,29 @@ struct KeptHash {
 struct HashLog {
   std::array<KeptHash, kKeptHashes> kept;
   KeptHash& of(Tick tick, std::uint32_t interval) { return kept[tick / interval % kKeptHashes]; }
+};
+
+/// A state is kept every so many ticks.
+inline constexpr Tick kKeepEvery = 30;
+/// A part of one level has kParts of the level below; one of level 0 is a value.
+inline constexpr std::uint64_t kParts = 64;
+inline constexpr std::uint8_t kTopLevel = 4;
+
+/// The search for what differs.
+struct Locating {
+  Locating() { kept.fill(kNever); }
+  std::array<Tick, kKeepSlots> kept;
+  Tick pinned = kNever;               ///< Is not replaced any more.
+  std::vector<std::uint64_t> hashes;  ///< Of the values of the pinned state.
+  bool asking = false;
+  bool done = false;
+  Seat seat = kNoSeat;
+  Tick from = 0;
+  std::uint8_t level = 0;
+  std::uint64_t part = 0;
+  std::uint64_t since = 0;
+  std::uint64_t askedAt = 0;
+  DesyncReport report;
 };
 
 }  // namespace lockstep
@@ -119,6 +146,22 @@ struct Session::Impl {
   void watchLinks();
   void finishLeaving();
   void bad() { ++stats.badPackets; }
+
+  // After a desync.
+  bool canLocate() const;
+  Tick keepInterval() const;
+  void keepState();
+  bool keeps(Tick tick) const;
+  bool pin(Tick tick);
+  Tick keptFrom(Tick tick) const;
+  std::uint64_t hashOfPart(std::uint8_t level, std::uint64_t part) const;
+  void beginLocating(Seat seat, Tick tick);
+  void locate();
+  void receiveAsk(Seat seat, PacketReader& reader);
+  void receiveAnswer(Seat seat, PacketReader& reader);
+  GameValue valueAt(std::uint64_t index) const;
+  SeatMask minorityAt(Tick tick);
+  void located(const GameValue& theirs);
 
   // Agreement.
   void agree();
@@ -189,6 +232,7 @@ struct Session::Impl {
   std::array<lockstep::HashLog, kMaxPlayers> hashes;  ///< As told by each seat; ours when certain.
   Tick hashesUpTo = 0;
   SeatMask desynced = 0;
+  lockstep::Locating locating;
 
   std::array<SessionEvent, lockstep::kKeptEvents> events;
   std::uint64_t eventsTold = 0;

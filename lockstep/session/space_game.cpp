@@ -23,6 +23,13 @@ std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
   return value ^ value >> 31;
 }
 
+/// Cuts a text to fit.
+void put(const std::string& text, std::span<char> into) {
+  const std::size_t length = std::min(text.size(), into.size() - 1);
+  std::copy_n(text.begin(), length, into.begin());
+  into[length] = 0;
+}
+
 #ifndef SAMESTEP_FIXED_ONLY
 std::uint64_t bitsOf(double value) { return std::bit_cast<std::uint64_t>(value); }
 #endif
@@ -36,7 +43,7 @@ struct SpaceGame<S>::Impl {
 
   void save(std::uint32_t slot) {
     space.save(saved[slot]);
-    if (own.save != nullptr) own.save(slot, own.data);
+    if (own.save != nullptr && slot < kSaveSlots) own.save(slot, own.data);
   }
   void load(std::uint32_t slot) {
     space.restore(saved[slot]);
@@ -69,10 +76,20 @@ struct SpaceGame<S>::Impl {
     const FieldDifference& first = found.front();
     const std::string line = first.object + ", " + first.field + ": " + first.a + " and " + first.b;
     if (text.empty()) return true;
-    const std::size_t length = std::min(line.size(), text.size() - 1);
-    std::copy_n(line.begin(), length, text.begin());
-    text[length] = 0;
+    put(line, text);
     return true;
+  }
+
+  std::uint32_t valueHashesOf(std::uint32_t slot, std::span<std::uint64_t> into) const {
+    const std::vector<std::uint64_t> hashes = valueHashes(saved[slot].state());
+    if (into.size() >= hashes.size()) std::copy(hashes.begin(), hashes.end(), into.begin());
+    return static_cast<std::uint32_t>(hashes.size());
+  }
+  void valueOf(std::uint32_t slot, std::uint32_t index, GameValue& into) const {
+    const WorldValue value = valueAt(saved[slot].state(), index);
+    put(value.object, into.object);
+    put(value.field, into.field);
+    put(value.value, into.text);
   }
 
   Space<S>& space;
@@ -80,7 +97,7 @@ struct SpaceGame<S>::Impl {
   ApplyInputs apply;
   void* data;
   OwnState own;
-  std::array<SavedSpace<S>, kSaveSlots> saved;
+  std::array<SavedSpace<S>, kSaveSlots + kKeepSlots> saved;
   std::optional<Recorder<S>> recorder;
   std::array<std::uint8_t, kMaxInputsBytes> inputBytes{};
 };
@@ -110,6 +127,12 @@ Game SpaceGame<S>::functions() {
   game.hash = [](void* data) { return Impl::self(data).hash(); };
   game.difference = [](std::uint32_t slotA, std::uint32_t slotB, std::span<char> text, void* data) {
     return Impl::self(data).difference(slotA, slotB, text);
+  };
+  game.valueHashes = [](std::uint32_t slot, std::span<std::uint64_t> into, void* data) {
+    return Impl::self(data).valueHashesOf(slot, into);
+  };
+  game.value = [](std::uint32_t slot, std::uint32_t index, GameValue& into, void* data) {
+    Impl::self(data).valueOf(slot, index, into);
   };
   return game;
 }

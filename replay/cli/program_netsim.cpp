@@ -75,6 +75,7 @@ void tellFailure(const MatchOptions& options, const MatchReport& report, const O
     std::printf("  the detector spoke up for tick %u, on peers with bits %x\n", report.desyncTick,
                 report.desynced);
   }
+  for (const std::string& finding : report.findings) std::printf("  %s\n", finding.c_str());
   std::printf("  again: %s\n", commandOf(options, asked).c_str());
   if (asked.shrinks) {
     std::printf("  smaller: %s\n", commandOf(netsim::shrink(options), asked).c_str());

@@ -267,6 +267,64 @@ struct Describer {
 
 }  // namespace
 
+namespace {
+
+/// Calls visit(object, field) for each value of a world, in the order of differences().
+template <Scalar S>
+class ValueWalk {
+ public:
+  explicit ValueWalk(const WorldState<S>& world) : world_(world) {}
+
+  template <class Visit>
+  void each(Visit&& visit) const {
+    record("settings", world_.settings, visit);
+    record("clock", Frame<S>{world_}, visit);
+    slots("body ", world_.bodies, visit);
+    slots("shape ", world_.shapes, visit);
+    for (const Pair<S>& pair : world_.pairs) record(pairName(pair), pair, visit);
+    for (const HandlerBinding& binding : world_.handlers) record(bindingName(binding), binding, visit);
+  }
+
+ private:
+  template <class T, class Visit>
+  static void record(const std::string& object, const T& value, Visit&& visit) {
+    for (const Field& field : fieldsOf(value)) visit(object, field);
+  }
+  template <class Map, class Visit>
+  static void slots(const char* kind, const Map& map, Visit&& visit) {
+    for (std::uint32_t i = 0; i < map.slots(); ++i) {
+      const std::string object = kind + std::to_string(i);
+      visit(object, {"generation", std::to_string(map.generationAt(i))});
+      if (map.aliveAt(i)) record(object, map.valueAt(i), visit);
+    }
+  }
+
+  const WorldState<S>& world_;
+};
+
+}  // namespace
+
+template <Scalar S>
+std::vector<std::uint64_t> valueHashes(const WorldState<S>& world) {
+  std::vector<std::uint64_t> hashes;
+  std::string line;
+  ValueWalk<S>(world).each([&](const std::string& object, const Field& field) {
+    line.assign(object).append("\n").append(field.name).append("\n").append(field.text);
+    hashes.push_back(XXH3_64bits(line.data(), line.size()));
+  });
+  return hashes;
+}
+
+template <Scalar S>
+WorldValue valueAt(const WorldState<S>& world, std::uint32_t index) {
+  WorldValue found;
+  std::uint32_t passed = 0;
+  ValueWalk<S>(world).each([&](const std::string& object, const Field& field) {
+    if (passed++ == index) found = {object, field.name, field.text};
+  });
+  return found;
+}
+
 template <Scalar S>
 std::string describe(const Command<S>& command) {
   return std::string(commandName(kindOf(command))) + ": " + std::visit(Describer<S>(), command);
@@ -275,6 +333,8 @@ std::string describe(const Command<S>& command) {
 #define SAMESTEP_EACH_SCALAR                                                                       \
   template std::vector<FieldDifference> differences<S>(const WorldState<S>&, const WorldState<S>&, \
                                                        std::uint32_t);                             \
+  template std::vector<std::uint64_t> valueHashes<S>(const WorldState<S>&);                        \
+  template WorldValue valueAt<S>(const WorldState<S>&, std::uint32_t);                             \
   template std::string describe<S>(const Command<S>&);
 #include <samestep/each_scalar.h>
 

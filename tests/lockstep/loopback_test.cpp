@@ -41,7 +41,22 @@ TEST(LoopbackTest, AWorldThatIsNotWhatItsInputsLeadToIsFound) {
   const std::vector<PeerResult> peers = playMatch(options);
 
   EXPECT_THAT(compareRecordings(options, peers), testing::HasSubstr("peer 1: its world after tick 101"));
-  for (const PeerResult& peer : peers) EXPECT_TRUE(peer.report.desynced);
+  for (const PeerResult& peer : peers) {
+    EXPECT_TRUE(peer.report.desynced);
+    EXPECT_THAT(peer.words, testing::HasSubstr("desync: body 2, center.x"));
+    EXPECT_THAT(peer.words, testing::Not(testing::HasSubstr("most")));
+  }
+}
+
+TEST(LoopbackTest, EachOfThreeNamesBodyAndFieldAndWhoDiffers) {
+  MatchOptions options = badNetwork(3);
+  options.flipSeat = 2;
+  options.flipTick = 100;
+
+  for (const PeerResult& peer : playMatch(options)) {
+    EXPECT_THAT(peer.words, testing::HasSubstr("desync: body 3, center.x after 120 ticks"));
+    EXPECT_THAT(peer.words, testing::HasSubstr("peer 2 differs from most"));
+  }
 }
 
 }  // namespace

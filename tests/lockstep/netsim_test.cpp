@@ -45,8 +45,8 @@ TEST(NetsimTest, PeersOfAPhysicsGameStayTheSame) {
   }
 }
 
-// Negative control: one unit in the position of one body, 2^-32 m.
-TEST(NetsimTest, OneUnitOfOneBodyIsCaughtByEveryPeer) {
+// Negative control: one bit in the position of one body, 2^-16 m.
+TEST(NetsimTest, OneBitOfOneBodyIsCaughtAndNamedByEveryPeer) {
   MatchOptions physics = options(3, kLoss, 300);
   physics.makeGame = makeArenaGame;
   physics.planted = Planted::flip;
@@ -55,6 +55,8 @@ TEST(NetsimTest, OneUnitOfOneBodyIsCaughtByEveryPeer) {
 
   EXPECT_THAT(report.violations, ::testing::Contains(::testing::HasSubstr("states of tick")));
   EXPECT_EQ(report.desynced, (1u << physics.peers) - 1) << all(report);
+  EXPECT_EQ(report.named, (1u << physics.peers) - 1) << ::testing::PrintToString(report.findings);
+  for (const std::string& finding : report.findings) EXPECT_THAT(finding, ::testing::HasSubstr("body 1, "));
 }
 
 TEST(NetsimTest, AMatchIsTheSameEachTime) {

@@ -18,6 +18,8 @@ inline constexpr Seat kNoSeat = 0xff;
 inline constexpr std::uint8_t kMaxWindow = 16;
 /// How many states a game keeps.
 inline constexpr std::uint32_t kSaveSlots = kMaxWindow + 2;
+/// And so many more, with the numbers from kSaveSlots on, if it can tell its values.
+inline constexpr std::uint32_t kKeepSlots = 4;
 
 /// What one player does in one tick.
 ///
@@ -49,6 +51,13 @@ std::size_t encodeInputs(const TickInputs& inputs, std::span<std::uint8_t> into)
 /// @throws MalformedBytes for what encodeInputs does not write
 TickInputs decodeInputs(std::span<const std::uint8_t> bytes, std::span<PlayerInput, kMaxPlayers> players);
 
+/// One value of a state in words, each cut to fit.
+struct GameValue {
+  char object[64] = {};
+  char field[64] = {};
+  char text[96] = {};
+};
+
 /// A game as four functions: the session asks, the game obeys. `data` is handed to each of them.
 ///
 /// The state must depend on nothing but the state before and the inputs.
@@ -66,6 +75,12 @@ struct Game {
   /// For SyncTest, and may be null: names the first thing in which two kept states differ, cut to fit `text`.
   /// @return whether they differ
   bool (*difference)(std::uint32_t slotA, std::uint32_t slotB, std::span<char> text, void* data) = nullptr;
+  /// For a Session to find what differs after a desync; both may be null. All values of a kept state in an
+  /// order of their own, each as a number that goes by its name and value.
+  /// @return how many there are; with room for all of them, they are written
+  std::uint32_t (*valueHashes)(std::uint32_t slot, std::span<std::uint64_t> into, void* data) = nullptr;
+  /// The value with a number below that count.
+  void (*value)(std::uint32_t slot, std::uint32_t index, GameValue& into, void* data) = nullptr;
 };
 
 }  // namespace samestep

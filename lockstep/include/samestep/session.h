@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace samestep {
 
@@ -90,6 +91,7 @@ struct SessionEvent {
     left,     ///< `seat` has its last input at the tick before `tick`.
     dropped,  ///< The same, agreed by the others.
     desync,   ///< The states after `tick` steps differ: `local` here, `remote` at `seat`.
+    located,  ///< What differs has been found: Session::desync().
     ended,
   };
   Kind kind = Kind::started;
@@ -99,6 +101,26 @@ struct SessionEvent {
   std::uint64_t local = 0;
   std::uint64_t remote = 0;
 };
+
+/// In what the states of two peers differ.
+struct DesyncReport {
+  /// The first state that is known to differ, after so many steps: hashes are compared at intervals.
+  Tick first = 0;
+  /// The state that was looked at, and the other peer.
+  Tick tick = 0;
+  Seat seat = kNoSeat;
+  /// The first value that differs, as it is here and there. Where only one has the object, the names differ
+  /// as well.
+  GameValue ours;
+  GameValue theirs;
+  /// Bit by seat: whose state after `first` steps is not that of most. 0 where no state is that of more than
+  /// half of the peers, as between two.
+  std::uint16_t minority = 0;
+};
+
+/// In a line: "body 7, center.x after 330 ticks: 1 (0x100000000) here, 2 (0x200000000) at peer 1; peer 1
+/// differs from most".
+std::string desyncText(const DesyncReport& report);
 
 /// In what two peers differ that want to play together.
 enum class Mismatch : std::uint8_t { none, protocol, players, settings, revision, fingerprint, content };
@@ -130,8 +152,8 @@ struct SessionStats {
 ///     each frame: session.frame(now, held);  while (session.next(event)) show(event);
 ///
 /// It reads no clock: `now` is in microseconds since any moment, and never goes back. After construction it
-/// takes no memory. All peers apply the same inputs in the same ticks and so, the game being deterministic,
-/// go through the same states.
+/// takes no memory, but to look for the cause of a desync. All peers apply the same inputs in the same ticks
+/// and so, the game being deterministic, go through the same states.
 class Session {
  public:
   /// @throws ValueOutOfRange for settings outside their ranges or a game without a function
@@ -175,6 +197,9 @@ class Session {
   std::uint32_t frameLength() const;
   /// Takes the oldest event. 64 are kept.
   bool next(SessionEvent& event);
+  /// What was found out about a desync so far: null where there was none; its values are empty before the
+  /// event `located`, and for a game without Game::value.
+  const DesyncReport* desync() const;
   const SessionStats& stats() const;
 
  private:

@@ -23,6 +23,21 @@ template <Scalar S>
 std::vector<FieldDifference> differences(const WorldState<S>& a, const WorldState<S>& b,
                                          std::uint32_t most = 0xffffffffu);
 
+/// One value of a world.
+struct WorldValue {
+  std::string object;
+  std::string field;
+  std::string value;
+};
+
+/// A hash of each value of a world with its name, in the order of differences(), so that two machines find
+/// the first in which their worlds differ without sending them.
+template <Scalar S>
+std::vector<std::uint64_t> valueHashes(const WorldState<S>& world);
+/// The value with a number below how many there are; beyond, all is empty.
+template <Scalar S>
+WorldValue valueAt(const WorldState<S>& world, std::uint32_t index);
+
 /// A command in words: "impulse: body 5, impulse (3, 0), arm (0, 0)".
 template <Scalar S>
 std::string describe(const Command<S>& command);
