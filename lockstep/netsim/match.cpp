@@ -68,6 +68,8 @@ void Match::shapeLinks() {
     for (Address to = 0; to < options_.peers; ++to) {
       LinkProfile& profile = network_.profile(from, to);
       profile.delay = delay + random_.below(10'000);
+      if (options_.delay != MatchOptions::kBySeed) profile.delay = options_.delay * 1000;
+      if (options_.loss != MatchOptions::kBySeed) profile.loss = options_.loss * 10;
       if (has(kAsymmetric) && from < to) profile.delay += random_.below(60'000);
       if (!has(kLoss)) continue;
       profile.jitter = random_.below(30'000);

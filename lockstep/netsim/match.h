@@ -43,6 +43,11 @@ struct MatchOptions {
   std::uint32_t faults = kAllFaults;
   Planted planted = Planted::none;
   std::unique_ptr<SimGame> (*makeGame)() = makeIntegerGame;
+  /// Of each link: the delay in ms, and how many of a hundred datagrams are lost; kBySeed: as the seed has
+  /// it.
+  static constexpr std::uint32_t kBySeed = 0xffffffffu;
+  std::uint32_t delay = kBySeed;
+  std::uint32_t loss = kBySeed;
 };
 
 struct MatchReport {

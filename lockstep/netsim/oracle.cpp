@@ -32,10 +32,9 @@ constexpr Tick kSeen = 120;
 /// Whether two peers had other states after each of so many steps: some faults heal.
 bool differFor(const Peer& a, const Peer& b, Tick from, Tick ticks) {
   if (std::min(a.certain(), b.certain()) < from + ticks) return false;
-  for (Tick tick = from + 1; &a != &b && tick < from + ticks; ++tick) {
-    if (a.records()[tick].state == b.records()[tick].state) return false;
-  }
-  return true;
+  Tick tick = from + 1;
+  while (tick < from + ticks && a.records()[tick].state != b.records()[tick].state) ++tick;
+  return tick == from + ticks;
 }
 
 std::string nameOf(Tick seat) { return "peer " + std::to_string(seat); }
@@ -114,7 +113,12 @@ void Oracle::detector(const MatchOptions& options, const Oracle::Peers& peers, S
   if (!survives(*peers[plantedSeat]) || report_.violations.empty()) return;
   for (Seat seat = 0; seat < peers.size(); ++seat) {
     const Peer& peer = *peers[seat];
-    if (!survives(peer) || !differFor(peer, *peers[plantedSeat], plantedTick, kSeen)) continue;
+    const auto lasts = [&](const auto& other) {
+      return survives(*other) && differFor(*other, *peers[plantedSeat], plantedTick, kSeen);
+    };
+    const bool shows =
+        seat == plantedSeat ? std::any_of(peers.begin(), peers.end(), lasts) : lasts(peers[seat]);
+    if (!survives(peer) || !shows) continue;
     const bool sees =
         eventOf(peer, SessionEvent::Kind::desync, seat == plantedSeat ? kNoSeat : plantedSeat) != nullptr;
     if (!sees) violate(nameOf(seat) + " did not notice the desync");

@@ -36,11 +36,20 @@ View getView(PacketReader& reader) {
 
 }  // namespace
 
+/// Whether a seat was heard of late, and its inputs are not what is waited for.
+bool Session::Impl::delivers(Seat seat, std::uint64_t within) const {
+  return !remote(seat) || (now - links[seat].lastHeard <= within && now - links[seat].lastInput <= within);
+}
+
+/// Whether a view of others names only seats that vote now.
+bool Session::Impl::withinVoters(const View& view) const {
+  return ((view.voters | view.dropped) & ~change.voters()) == 0;
+}
+
 Session::Impl::SeatMask Session::Impl::suspected() const {
   SeatMask found = 0;
   for (Seat seat = 0; seat < settings.players; ++seat) {
-    const bool silent = remote(seat) && now - links[seat].lastHeard > settings.dropAfter;
-    if (silent) found |= bit(seat);
+    if (!delivers(seat, settings.dropAfter)) found |= bit(seat);
   }
   return static_cast<SeatMask>(found & live());
 }
@@ -104,8 +113,10 @@ void Session::Impl::receivePrepare(Seat seat, PacketReader& reader) {
   const std::uint32_t ballot = reader.u32();
   const SeatMask dropped = reader.u16();
   if (!reader.done() || (ballot & 15) != seat) return bad();
-  // Nobody helps to drop itself.
-  if ((dropped & bit(settings.localSeat)) != 0) return;
+  // Nobody helps to drop itself, or whom it hears.
+  for (Seat gone = 0; gone < settings.players; ++gone) {
+    if ((dropped & bit(gone)) != 0 && delivers(gone, settings.interruptedAfter)) return;
+  }
   if (change.promise(ballot, dropped) && change.ballot() < ballot) {
     change.yield();
     proposedAt = now;
@@ -148,8 +159,10 @@ void Session::Impl::receivePromise(Seat seat, PacketReader& reader) {
 void Session::Impl::receiveAccept(Seat seat, PacketReader& reader) {
   const std::uint32_t ballot = reader.u32();
   const View view = getView(reader);
-  if (!reader.done() || (ballot & 15) != seat) return bad();
+  if (!reader.done() || (ballot & 15) != seat || !withinVoters(view)) return bad();
   if ((view.dropped & bit(settings.localSeat)) != 0 || ballot < change.promised()) return;
+  // All who stay have promised it: a value that nobody proposed is forged.
+  if ((view.dropped & ~change.frozen()) != 0) return bad();
   // The proposer asks again.
   if (!haveAll(view) || !change.accept(ballot, view)) return;
   if (change.ballot() < ballot) change.yield();
@@ -180,11 +193,26 @@ void Session::Impl::sendCommit(Seat to, std::uint32_t number) {
   send(to, writer);
 }
 
-void Session::Impl::receiveCommit(PacketReader& reader) {
+void Session::Impl::receiveCommit(Seat seat, PacketReader& reader) {
   const std::uint32_t number = reader.u32();
   const View view = getView(reader);
   if (!reader.done()) return bad();
-  if (number == viewNumber + 1) decide(view);
+  if (number != viewNumber + 1) return;
+  if (!withinVoters(view)) return bad();
+  // Whoever stays has accepted what is decided; others believe as many as may decide.
+  const bool accepted = change.acceptedBallot() != 0 && change.accepted() == view;
+  if (accepted || vouched(seat, view)) return decide(view);
+  bad();
+}
+
+/// Notes what a seat says was decided. @return whether so many say the same that it must be so
+bool Session::Impl::vouched(Seat seat, const View& view) {
+  vouchedFor[seat] = view;
+  SeatMask same = 0;
+  for (Seat other = 0; other < settings.players; ++other) {
+    if (remote(other) && vouchedFor[other] == view) same |= bit(other);
+  }
+  return quorum(same, change.voters());
 }
 
 /// Whether all inputs of those to be dropped are here; asks the others for what is not.
@@ -204,6 +232,9 @@ void Session::Impl::decide(const View& view) {
   views[viewNumber % kKeptViews] = view;
   const SeatMask known = static_cast<SeatMask>(change.voters() | view.voters);
   change.begin(view.voters);
+  vouchedFor.fill({});
+  // What was frozen may come now.
+  for (Link& link : links) link.lastInput = now;
   changeSince = 0;
   proposedAt = 0;
   for (Seat seat = 0; seat < settings.players; ++seat) {

@@ -30,7 +30,10 @@ void Session::Impl::poll(std::uint64_t time) {
   now += gap;
   // Whoever was not looking cannot say that the others were silent.
   if (gap > settings.interruptedAfter) {
-    for (Link& link : links) link.lastHeard += gap;
+    for (Link& link : links) {
+      link.lastHeard += gap;
+      link.lastInput += gap;
+    }
   }
   if (state == SessionState::ended) return;
   std::uint8_t bytes[kMaxDatagram];
@@ -96,7 +99,7 @@ void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
     link.lastCommit = now;
     sendCommit(seat, viewNumber - static_cast<std::uint32_t>(behind) + 1);
   }
-  if (type == Packet::commit) return receiveCommit(reader);
+  if (type == Packet::commit) return receiveCommit(seat, reader);
   // What the seat said before it was dropped has its place in the decision.
   if (ends[seat] != kNever && (change.voters() & bit(seat)) == 0) return;
   link.lastHeard = now;
@@ -198,7 +201,7 @@ void Session::Impl::receiveHello(Seat seat, PacketReader& reader) {
     if (remote(other) && !links[other].heard) return;
   }
   state = SessionState::running;
-  for (Link& link : links) link.lastHeard = now;
+  for (Link& link : links) link.lastHeard = link.lastInput = now;
   tell({SessionEvent::Kind::started});
 }
 
@@ -232,6 +235,7 @@ void Session::Impl::receiveInputs(Seat seat, std::uint8_t flags, PacketReader& r
     link.lagThere += (lag * 128 - link.lagThere) / 4;
     if (link.paused != ((flags & kPaused) != 0)) {
       link.paused = !link.paused;
+      link.pausedSince = now;
       tell({link.paused ? SessionEvent::Kind::paused : SessionEvent::Kind::unpaused, seat});
     }
   }
@@ -340,6 +344,11 @@ void Session::Impl::watchLinks() {
       if (link.lastSent == 0 || now - link.lastSent >= kHelloEvery) sendHello(seat);
       continue;
     }
+    // Whoever waits for others has made the input of the step that all wait for.
+    const bool grows = streams[seat].end() != link.endSeen;
+    link.endSeen = streams[seat].end();
+    const bool rests = link.paused && now - link.pausedSince < settings.pausedAtMost;
+    if (grows || link.endSeen > certain || rests || paused) link.lastInput = now;
     if (now - link.lastSent >= settings.resendAfter) sendInputs(seat);
     if (ends[seat] != kNever) continue;
     const bool silent = now - link.lastHeard >= settings.interruptedAfter;

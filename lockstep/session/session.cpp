@@ -131,6 +131,32 @@ SessionState Session::state() const { return impl_->state; }
 EndReason Session::endReason() const { return impl_->reason; }
 Tick Session::tick() const { return impl_->current; }
 Tick Session::confirmed() const { return impl_->certain; }
+bool Session::inputs(Tick tick, std::span<PlayerInput, kMaxPlayers> players, TickInputs& into) const {
+  if (tick >= impl_->certain) return false;
+  for (Seat seat = 0; seat < impl_->settings.players; ++seat) {
+    const InputStream& stream = impl_->streams[seat];
+    players[seat] = {};
+    if (tick >= impl_->ends[seat]) continue;
+    if (!stream.has(tick)) return false;
+    const InputEntry entry = stream.at(tick);
+    players[seat] = {true, entry.held, entry.commands};
+  }
+  into = {tick, players.first(impl_->settings.players)};
+  return true;
+}
+
+bool Session::certainState(Tick& tick, std::uint32_t& slot) const {
+  bool found = false;
+  for (std::uint32_t place = 0; place < kKeepSlots; ++place) {
+    const Tick kept = impl_->locating.kept[place];
+    if (!impl_->canLocate() || !impl_->keeps(kept) || (found && kept < tick)) continue;
+    found = true;
+    tick = kept;
+    slot = kSaveSlots + place;
+  }
+  return found;
+}
+
 std::uint16_t Session::present() const { return impl_->live(); }
 const SessionStats& Session::stats() const { return impl_->stats; }
 const DesyncReport* Session::desync() const {

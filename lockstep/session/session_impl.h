@@ -50,6 +50,10 @@ struct Link {
   bool paused = false;
   bool interrupted = false;
   std::uint64_t lastHeard = 0;
+  /// When we last had no need to wait for its next input.
+  std::uint64_t lastInput = 0;
+  Tick endSeen = 0;  ///< Of its inputs, at the last look.
+  std::uint64_t pausedSince = 0;
   std::uint64_t lastSent = 0;
   std::uint64_t lastCommit = 0;
   std::uint64_t lastAnswered = 0;
@@ -172,7 +176,10 @@ struct Session::Impl {
   void receivePromise(Seat seat, PacketReader& reader);
   void receiveAccept(Seat seat, PacketReader& reader);
   void receiveAccepted(Seat seat, PacketReader& reader);
-  void receiveCommit(PacketReader& reader);
+  void receiveCommit(Seat seat, PacketReader& reader);
+  bool vouched(Seat seat, const lockstep::View& view);
+  bool withinVoters(const lockstep::View& view) const;
+  bool delivers(Seat seat, std::uint64_t within) const;
   void sendPromise(Seat to, std::uint32_t ballot);
   void sendAccepted(Seat to, std::uint32_t ballot);
   void sendCommit(Seat to, std::uint32_t number);
@@ -223,6 +230,8 @@ struct Session::Impl {
   std::uint32_t viewNumber = 0;
   lockstep::ViewChange change;
   std::array<lockstep::View, lockstep::kKeptViews> views;
+  /// What each seat told was decided as the next view.
+  std::array<lockstep::View, kMaxPlayers> vouchedFor{};
   std::uint64_t changeSince = 0;  ///< When a change became needed; 0: is not.
   std::uint64_t proposedAt = 0;
   std::uint64_t askedAt = 0;

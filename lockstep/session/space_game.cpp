@@ -2,6 +2,7 @@
 #include <samestep/error.h>
 #include <samestep/fingerprint.h>
 #include <samestep/recorder.h>
+#include <samestep/space_codec.h>
 #include <samestep/space_game.h>
 #include <samestep/state_diff.h>
 #include <samestep/version.h>
@@ -142,6 +143,21 @@ void SpaceGame<S>::describe(SessionSettings& settings) const {
   settings.revision = kSimulationRevision;
   settings.fingerprint = fingerprint<S>();
   settings.content = mix(mix(settings.content, impl_->hash()), bitsOf(impl_->timeStep));
+}
+
+template <Scalar S>
+bool SpaceGame<S>::snapshot(const Session& session, Tick& tick, std::vector<std::uint8_t>& bytes) const {
+  std::uint32_t slot = 0;
+  if (!session.certainState(tick, slot)) return false;
+  bytes.clear();
+  encodeWorld(impl_->saved[slot].state(), bytes);
+  return true;
+}
+
+template <Scalar S>
+void SpaceGame<S>::load(std::span<const std::uint8_t> bytes) {
+  std::uint64_t offset = 0;
+  impl_->space.adopt(decodeWorld<S>(bytes, offset));
 }
 
 template <Scalar S>

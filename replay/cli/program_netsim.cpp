@@ -20,6 +20,8 @@ struct Options {
   std::string game = "arena";
   std::string planted = "none";
   bool shrinks = true;
+  std::uint32_t delay = MatchOptions::kBySeed;
+  std::uint32_t loss = MatchOptions::kBySeed;
 };
 
 struct Range {
@@ -64,6 +66,8 @@ std::string commandOf(const MatchOptions& options, const Options& asked) {
                      std::to_string(options.peers) + " --ticks " + std::to_string(options.ticks) +
                      " --fault " + netsim::faultNames(options.faults);
   if (asked.game != "arena") text += " --game " + asked.game;
+  if (asked.delay != MatchOptions::kBySeed) text += " --delay " + std::to_string(asked.delay);
+  if (asked.loss != MatchOptions::kBySeed) text += " --loss " + std::to_string(asked.loss);
   if (asked.planted != "none") text += " --plant " + asked.planted;
   return text;
 }
@@ -112,10 +116,11 @@ struct Sum {
         "waited\n",
         number(matches), number(failed), number(all.milliseconds / 1000), number(all.steps),
         number(all.rollbacks), all.deepest, number(all.waited));
-    // IP and UDP take 28 bytes of each.
-    const std::uint64_t bytes = all.payload + 28 * all.datagrams;
+    // IP and UDP take 28 bytes of each, and a seal 21.
+    const std::uint64_t bytes = all.payload + (28 + 21) * all.datagrams;
     std::printf(
-        "%llu datagrams, %llu lost; %llu bytes a second sent by each peer; %u peers dropped, %u left\n",
+        "%llu datagrams, %llu lost; %llu bytes a second sent by each peer, with seals, IP and UDP; %u peers "
+        "dropped, %u left\n",
         number(all.datagrams), number(all.lost),
         number(bytes * 1000 / std::max<std::uint64_t>(peerMilliseconds, 1)), all.dropped, all.left);
     std::printf("trace %s\n", hex(all.trace).c_str());
@@ -139,6 +144,8 @@ int run(const Options& asked) {
     options.peers = static_cast<std::uint32_t>(peers.first + seed % (peers.last - peers.first + 1));
     options.ticks = asked.ticks;
     options.faults = faults;
+    options.delay = asked.delay;
+    options.loss = asked.loss;
     options.planted = plantedNamed(asked.planted);
     options.makeGame = asked.game == "arena" ? netsim::makeArenaGame : netsim::makeIntegerGame;
     const MatchReport report = netsim::runMatch(options);
@@ -169,6 +176,10 @@ void addNetsim(CLI::App& app, int& result) {
           "all or none")
       ->delimiter(',')
       ->capture_default_str();
+  word->add_option("--delay", options->delay, "One way, ms, in place of what the seed has")
+      ->check(CLI::Range(0u, 1000u));
+  word->add_option("--loss", options->loss, "Of a hundred datagrams, in place of what the seed has")
+      ->check(CLI::Range(0u, 90u));
   word->add_option("--game", options->game, "What is played: physics, or a game whose state is one integer")
       ->check(CLI::IsMember({"arena", "integer"}))
       ->capture_default_str();

@@ -205,6 +205,87 @@ TEST(SessionTest, APauseHoldsAllAndDropsNobody) {
   EXPECT_GT(table.sessions[0]->tick(), tick + 50);
 }
 
+/// A commit as a peer would send it: `number` decided, `voters` go on, seat 2 is dropped with its input 20.
+std::vector<std::uint8_t> commitOf(Seat from, std::uint8_t number, std::uint8_t voters) {
+  return {7,  from, 0, 0, static_cast<std::uint8_t>(number - 1), number, 0, 0, 0, voters, 0, 4, 0,
+          20, 0,    0, 0};
+}
+
+TEST(SessionTest, ACommitThatOnePeerForgesIsRefused) {
+  Table table(4);
+  table.play(30);
+  table.post->put(1, 0, commitOf(1, 1, 0b1011));
+  table.post->put(1, 2, commitOf(1, 1, 0b1011));
+  // One that names somebody who does not play.
+  table.post->put(1, 3, commitOf(1, 1, 0b11011));
+  table.play(60);
+
+  EXPECT_EQ(table.sessions[0]->present(), 0b1111);
+  EXPECT_EQ(table.sessions[2]->state(), SessionState::running);
+  EXPECT_GT(table.sessions[3]->tick(), 80u);
+  EXPECT_EQ(table.sessions[0]->stats().badPackets, 1u);
+  EXPECT_EQ(table.sessions[3]->stats().badPackets, 1u);
+}
+
+// Negative control: the same bytes are a commit.
+TEST(SessionTest, ACommitThatMostTellIsBelieved) {
+  Table table(4);
+  table.play(30);
+  for (const Seat from : {Seat{0}, Seat{1}, Seat{3}}) table.post->put(from, 2, commitOf(from, 1, 0b1011));
+  table.play(2);
+
+  EXPECT_EQ(table.sessions[2]->endReason(), EndReason::dropped);
+}
+
+TEST(SessionTest, WhoIsHeardIsNotDroppedBecauseOneAsks) {
+  Table table(4);
+  table.play(30);
+  for (Seat to : {Seat{0}, Seat{3}}) {
+    // Seat 1 asks to drop seat 2, and then says that all agreed.
+    table.post->put(1, to, std::vector<std::uint8_t>{3, 1, 0, 0, 0, 17, 0, 0, 0, 4, 0});
+    table.post->put(1, to,
+                    std::vector<std::uint8_t>{5, 1, 0, 0, 0, 17, 0, 0, 0, 0b1011, 0, 4, 0, 20, 0, 0, 0});
+    table.post->put(1, to, commitOf(1, 1, 0b1011));
+  }
+  table.play(300);
+
+  for (Seat seat = 0; seat < 4; ++seat) EXPECT_EQ(table.sessions[seat]->present(), 0b1111);
+  EXPECT_GT(table.sessions[0]->tick(), 300u);
+  EXPECT_TRUE(table.agree());
+}
+
+/// Whoever goes on talking but makes no inputs.
+TEST(SessionTest, APeerThatMakesNoInputsIsDropped) {
+  Table table(3);
+  table.play(30);
+  for (int i = 0; i < 400; ++i) {
+    table.now += 16'667;
+    const std::uint8_t held = 1;
+    table.sessions[0]->frame(table.now, {&held, 1});
+    table.sessions[1]->frame(table.now, {&held, 1});
+    table.sessions[2]->poll(table.now);
+  }
+
+  EXPECT_EQ(table.sessions[0]->present(), 0b011);
+  EXPECT_EQ(table.sessions[1]->present(), 0b011);
+  EXPECT_EQ(table.sessions[2]->endReason(), EndReason::dropped);
+  EXPECT_GT(table.sessions[0]->tick(), 200u);
+}
+
+TEST(SessionTest, APauseThatNeverEndsIsNoReasonToWaitForEver) {
+  SessionSettings settings;
+  settings.pausedAtMost = 5'000'000;
+  Table table(3, settings);
+  table.play(30);
+  table.sessions[2]->pause(true);
+  table.play(240);
+  EXPECT_EQ(table.sessions[0]->present(), 0b111);
+  table.play(600);
+
+  EXPECT_EQ(table.sessions[0]->present(), 0b011);
+  EXPECT_GT(table.sessions[0]->tick(), 100u);
+}
+
 template <class Change>
 Mismatch refusal(Change&& change) {
   std::vector<SessionSettings> settings(2);

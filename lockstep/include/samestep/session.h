@@ -52,8 +52,10 @@ struct SessionSettings {
   // Microseconds.
   std::uint32_t resendAfter = 50'000;
   std::uint32_t interruptedAfter = 500'000;
-  /// A peer that is silent for so long is dropped by the others.
+  /// A peer that is silent for so long, or whose next input is so late, is dropped by the others.
   std::uint32_t dropAfter = 3'000'000;
+  /// A pause may last for so long; then its peer is dropped like one that makes no inputs.
+  std::uint32_t pausedAtMost = 300'000'000;
   /// When two leave at about the same time, one waits for so long to hear from the other.
   std::uint32_t goneAfter = 1'000'000;
   /// A match that cannot go on, for most of its players are gone, ends after so long.
@@ -190,6 +192,12 @@ class Session {
   /// Steps made, and steps whose inputs are all known; the latter may be ahead.
   Tick tick() const;
   Tick confirmed() const;
+  /// The inputs of a certain step that is not longer ago than 200 ticks. They last until the next call.
+  /// @return false for any other step
+  bool inputs(Tick tick, std::span<PlayerInput, kMaxPlayers> players, TickInputs& into) const;
+  /// The number under which the game keeps a state that is certain, of the last seconds; for games that tell
+  /// their values. @return false while there is none
+  bool certainState(Tick& tick, std::uint32_t& slot) const;
   /// Bit by seat: who plays now.
   std::uint16_t present() const;
   /// How long a frame should last, in thousandths of the usual: over 1000 for who is ahead of the others.

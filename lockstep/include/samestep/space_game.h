@@ -47,6 +47,14 @@ class SpaceGame {
   /// own data.
   void describe(SessionSettings& settings) const;
 
+  /// The newest certain state that a session of this game keeps, as bytes for load: what a SpectatorHost
+  /// sends. An OwnState is not in them.
+  /// @return false while there is none
+  bool snapshot(const Session& session, Tick& tick, std::vector<std::uint8_t>& bytes) const;
+  /// Brings in such a state, whatever its bytes are.
+  /// @throws as loadSnapshot
+  void load(std::span<const std::uint8_t> bytes);
+
   /// Records the match from its present world on, appending to `bytes`, which must outlive this: a replay
   /// shows it as it was played in the end, without what was guessed. See Recorder; an OwnState is not in it.
   void record(std::vector<std::uint8_t>& bytes);
