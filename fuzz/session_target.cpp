@@ -243,10 +243,9 @@ class Run {
     Mail mail;
     mail.from = (kind >> 4) % table_.players();
     const auto rest = bytes_.take(bytes_.next() % 64);
-    mail.size = static_cast<std::uint32_t>(5 + rest.size());
-    mail.bytes[0] = kind & 15;
-    mail.bytes[1] = static_cast<std::uint8_t>(mail.from);
-    std::copy(rest.begin(), rest.end(), mail.bytes.begin() + 5);
+    mail.size = static_cast<std::uint32_t>(3 + rest.size());
+    mail.bytes[0] = static_cast<std::uint8_t>((kind & 15) | mail.from << 4);
+    std::copy(rest.begin(), rest.end(), mail.bytes.begin() + 3);
     if (table_.box(to).size() < kBox) table_.box(to).push_back(mail);
     forged_ = true;
   }

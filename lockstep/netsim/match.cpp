@@ -93,7 +93,8 @@ void Match::addPeers() {
   settings.players = static_cast<std::uint8_t>(options_.peers);
   settings.maxHeldBytes = 4;
   settings.maxCommandBytes = 16;
-  settings.hashInterval = static_cast<std::uint16_t>(random_.within(1, 60));
+  // Most games keep the usual one.
+  if (random_.perMille(500)) settings.hashInterval = static_cast<std::uint16_t>(random_.within(1, 60));
   for (Seat seat = 0; seat < options_.peers; ++seat) settings.addresses[seat] = seat;
   for (Seat seat = 0; seat < options_.peers; ++seat) {
     settings.localSeat = seat;

@@ -4,6 +4,7 @@
 #include <samestep/expects.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace samestep::lockstep {
@@ -11,7 +12,9 @@ namespace {
 
 /// What the low two bits of a run's tag say; the number above them is the run's length or that of its bytes.
 enum Run : std::uint8_t {
-  kRepeat = 0,    ///< So many inputs that hold what the one before held.
+  /// So many inputs that hold what the one before held; none of them: an input that holds as many bytes as
+  /// the one before, with a bit for each that is another, and these.
+  kRepeat = 0,
   kHeld = 1,      ///< An input that holds so many bytes.
   kCommands = 2,  ///< An input that holds what the one before held, with so many bytes of commands.
   kWhole = 3,     ///< An input that holds so many bytes, with commands and a control.
@@ -27,8 +30,50 @@ void copy(std::uint8_t* to, std::span<const std::uint8_t> from) {
 
 bool plain(const InputEntry& entry) { return entry.commands.empty() && entry.control == Control::none; }
 
+constexpr std::size_t kMostMasked = 8;
+
+/// A bit for each byte that is another one than before.
+std::uint8_t maskOf(std::span<const std::uint8_t> held, std::span<const std::uint8_t> before) {
+  std::uint8_t mask = 0;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] != before[i]) mask = static_cast<std::uint8_t>(mask | 1u << i);
+  }
+  return mask;
+}
+
+/// Whether few enough bytes changed for a mask to be shorter.
+bool masked(std::span<const std::uint8_t> held, std::span<const std::uint8_t> before) {
+  if (held.size() != before.size() || held.size() > kMostMasked) return false;
+  return static_cast<std::size_t>(std::popcount(maskOf(held, before))) + 1 < held.size();
+}
+
+void encodeMasked(PacketWriter& writer, std::span<const std::uint8_t> held,
+                  std::span<const std::uint8_t> before) {
+  writer.u8(0);
+  writer.u8(maskOf(held, before));
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] != before[i]) writer.u8(held[i]);
+  }
+}
+
+/// Changes the bytes of before.
+InputEntry decodeMasked(PacketReader& reader, std::span<const std::uint8_t> before,
+                        std::span<std::uint8_t, kMostMasked> into) {
+  const std::uint8_t mask = reader.u8();
+  if (before.empty() || before.size() > kMostMasked || mask >> before.size() != 0) {
+    reader.fail();
+    return {};
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    into[i] = (mask >> i & 1) != 0 ? reader.u8() : before[i];
+  }
+  return {into.first(before.size()), {}};
+}
+
 void encodeEntry(PacketWriter& writer, const InputEntry& entry, std::span<const std::uint8_t> before) {
-  if (plain(entry)) {
+  if (plain(entry) && masked(entry.held, before)) {
+    encodeMasked(writer, entry.held, before);
+  } else if (plain(entry)) {
     writer.varint(entry.held.size() << 2 | kHeld);
     writer.bytes(entry.held);
   } else if (entry.control == Control::none && same(entry.held, before)) {
@@ -143,16 +188,19 @@ bool decodeEntries(PacketReader& reader, InputStream& stream, Tick base, Tick li
     return true;
   }
   std::uint8_t held[256];
+  std::uint8_t changed[kMostMasked] = {};
   std::uint32_t heldBytes = static_cast<std::uint32_t>(stream.heldBefore(base).size());
   copy(held, stream.heldBefore(base));
   Tick tick = base;
   while (reader.left() > 0) {
     const std::uint64_t tag = reader.varint(std::uint64_t{InputStream::kCapacity} << 2 | 3);
-    const bool repeat = (tag & 3) == kRepeat;
+    const bool repeat = (tag & 3) == kRepeat && tag != 0;
     const std::span<const std::uint8_t> before{held, heldBytes};
-    const InputEntry entry = repeat ? InputEntry{before, {}} : decodeEntry(reader, stream, tag, before);
+    const InputEntry entry = repeat     ? InputEntry{before, {}}
+                             : tag == 0 ? decodeMasked(reader, before, changed)
+                                        : decodeEntry(reader, stream, tag, before);
     const std::uint64_t count = repeat ? tag >> 2 : 1;
-    if (!reader.good() || count == 0 || tick + count > base + InputStream::kCapacity) return false;
+    if (!reader.good() || tick + count > base + InputStream::kCapacity) return false;
     for (std::uint64_t i = 0; i < count; ++i, ++tick) {
       if (tick != stream.end()) continue;
       if (tick >= limit) return true;

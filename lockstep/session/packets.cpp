@@ -15,7 +15,9 @@ constexpr int kMostReceived = 512;
 constexpr std::uint64_t kHelloEvery = 100'000;
 constexpr std::uint64_t kCommitEvery = 50'000;
 constexpr std::uint64_t kWantEvery = 50'000;
-constexpr std::uint8_t kPaused = 1;
+/// Beside how far the other is behind.
+constexpr std::uint8_t kPaused = 128;
+constexpr std::uint32_t kHashesTold = 2;
 
 /// The tick nearest to `near` with these low bits.
 Tick unwrap(std::uint16_t low, Tick near) {
@@ -77,12 +79,12 @@ void Session::Impl::finishLeaving() {
 void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
   PacketReader reader(bytes);
   const std::uint8_t first = reader.u8();
-  const Seat seat = reader.u8();
-  const std::uint16_t match = reader.u16();
+  const std::uint8_t match = reader.u8();
   const std::uint8_t view = reader.u8();
   const auto type = static_cast<Packet>(first & 15);
+  const Seat seat = first >> 4;
   if (!reader.good() || type > Packet::answer || seat >= settings.players || !remote(seat) ||
-      settings.addresses[seat] != from || match != static_cast<std::uint16_t>(settings.match)) {
+      settings.addresses[seat] != from || match != static_cast<std::uint8_t>(settings.match)) {
     return bad();
   }
   Link& link = links[seat];
@@ -106,13 +108,13 @@ void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
   // Ballots of another decision mean nothing here.
   const bool decision = type >= Packet::prepare && type <= Packet::accepted;
   if (decision && behind != 0) return;
-  receiveFrom(seat, type, first >> 4, reader);
+  receiveFrom(seat, type, reader);
 }
 
-void Session::Impl::receiveFrom(Seat seat, Packet type, std::uint8_t flags, PacketReader& reader) {
+void Session::Impl::receiveFrom(Seat seat, Packet type, PacketReader& reader) {
   switch (type) {
     case Packet::inputs:
-      return receiveInputs(seat, flags, reader);
+      return receiveInputs(seat, reader);
     case Packet::prepare:
       return receivePrepare(seat, reader);
     case Packet::promise:
@@ -136,10 +138,10 @@ void Session::Impl::receiveFrom(Seat seat, Packet type, std::uint8_t flags, Pack
   }
 }
 
-void Session::Impl::header(PacketWriter& writer, Packet type, std::uint8_t flags) const {
-  writer.u8(static_cast<std::uint8_t>(static_cast<std::uint8_t>(type) | flags << 4));
-  writer.u8(settings.localSeat);
-  writer.u16(static_cast<std::uint16_t>(settings.match));
+/// Few bytes, for there are many packets: hellos have compared the rest.
+void Session::Impl::header(PacketWriter& writer, Packet type) const {
+  writer.u8(static_cast<std::uint8_t>(static_cast<std::uint8_t>(type) | settings.localSeat << 4));
+  writer.u8(static_cast<std::uint8_t>(settings.match));
   writer.u8(static_cast<std::uint8_t>(viewNumber));
 }
 
@@ -210,21 +212,23 @@ void Session::Impl::sendInputs(Seat seat) {
   if (ends[seat] != kNever && (change.voters() & bit(seat)) == 0) return;
   std::uint8_t bytes[kMaxPacket];
   PacketWriter writer(bytes);
-  header(writer, Packet::inputs, paused ? kPaused : 0);
+  header(writer, Packet::inputs);
   writer.u16(static_cast<std::uint16_t>(link.acked));
   writer.u16(static_cast<std::uint16_t>(streams[seat].end()));
   writer.u8(static_cast<std::uint8_t>(current - link.acked));
-  writer.u8(static_cast<std::uint8_t>(std::clamp(link.lagHere / 128, -127, 127)));
+  const std::int32_t lag = std::clamp(link.lagHere / 128, -64, 63) + 64;
+  writer.u8(static_cast<std::uint8_t>(lag | (paused ? kPaused : 0)));
   encodeEntries(writer, own(), link.acked, own().end());
   send(seat, writer);
 }
 
-void Session::Impl::receiveInputs(Seat seat, std::uint8_t flags, PacketReader& reader) {
+void Session::Impl::receiveInputs(Seat seat, PacketReader& reader) {
   Link& link = links[seat];
   const Tick base = unwrap(reader.u16(), streams[seat].end());
   const Tick acked = unwrap(reader.u16(), link.acked);
   const std::uint8_t ahead = reader.u8();
-  const auto lag = static_cast<std::int8_t>(reader.u8());
+  const std::uint8_t last = reader.u8();
+  const std::int32_t lag = (last & (kPaused - 1)) - 64;
   if (!reader.good() || base > streams[seat].end() + InputStream::kCapacity || acked > own().end())
     return bad();
   link.acked = std::max(link.acked, acked);
@@ -233,7 +237,7 @@ void Session::Impl::receiveInputs(Seat seat, std::uint8_t flags, PacketReader& r
   if (tick + kMaxLead >= link.tick && tick <= certain + 4 * kMaxLead && tick >= link.tick) {
     link.tick = tick;
     link.lagThere += (lag * 128 - link.lagThere) / 4;
-    if (link.paused != ((flags & kPaused) != 0)) {
+    if (link.paused != ((last & kPaused) != 0)) {
       link.paused = !link.paused;
       link.pausedSince = now;
       tell({link.paused ? SessionEvent::Kind::paused : SessionEvent::Kind::unpaused, seat});
@@ -265,7 +269,7 @@ void Session::Impl::sendHashes() {
   header(writer, Packet::hashes);
   writer.u32(hashesUpTo);
   // The one before goes with it, in case it was lost.
-  for (std::uint32_t back = 0; back < 4; ++back) {
+  for (std::uint32_t back = 0; back < kHashesTold; ++back) {
     const Tick tick = hashesUpTo - back * settings.hashInterval;
     const KeptHash& kept = hashes[settings.localSeat].of(tick, settings.hashInterval);
     if (kept.tick != tick) break;
@@ -279,7 +283,7 @@ void Session::Impl::sendHashes() {
 void Session::Impl::receiveHashes(Seat seat, PacketReader& reader) {
   const Tick newest = reader.u32();
   if (settings.hashInterval == 0 || newest % settings.hashInterval != 0) return bad();
-  for (std::uint32_t back = 0; reader.good() && reader.left() > 0 && back < 4; ++back) {
+  for (std::uint32_t back = 0; reader.good() && reader.left() > 0 && back < kHashesTold; ++back) {
     const std::uint64_t hash = reader.u64();
     const Tick tick = newest - back * settings.hashInterval;
     if (!reader.good() || tick > newest || tick > certain + 4 * kMaxLead) return bad();

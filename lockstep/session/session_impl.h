@@ -16,7 +16,7 @@ namespace samestep {
 
 namespace lockstep {
 
-/// The first byte of every packet, in its low four bits.
+/// The first byte of every packet, in its low four bits; the others are the sender's seat.
 enum class Packet : std::uint8_t {
   hello = 0,    ///< What must be the same everywhere, and whom the sender has heard.
   refuse = 1,   ///< Why the sender will not play with the receiver.
@@ -133,9 +133,9 @@ struct Session::Impl {
   // Packets.
   void poll(std::uint64_t time);
   void receive(Address from, std::span<const std::uint8_t> bytes);
-  void receiveFrom(Seat seat, lockstep::Packet type, std::uint8_t flags, PacketReader& reader);
+  void receiveFrom(Seat seat, lockstep::Packet type, PacketReader& reader);
   void receiveHello(Seat seat, PacketReader& reader);
-  void receiveInputs(Seat seat, std::uint8_t flags, PacketReader& reader);
+  void receiveInputs(Seat seat, PacketReader& reader);
   void receiveHashes(Seat seat, PacketReader& reader);
   void takeControls(Seat seat);
   void receiveWant(Seat seat, PacketReader& reader);
@@ -146,7 +146,7 @@ struct Session::Impl {
   void sendHashes();
   void sendWants();
   void send(Seat seat, const PacketWriter& writer);
-  void header(PacketWriter& writer, lockstep::Packet type, std::uint8_t flags = 0) const;
+  void header(PacketWriter& writer, lockstep::Packet type) const;
   void watchLinks();
   void finishLeaving();
   void bad() { ++stats.badPackets; }

@@ -21,6 +21,10 @@ InputStream filled(Tick first, Tick count, std::uint64_t seed) {
   Bytes held(4, 0);
   for (Tick i = 0; i < count; ++i) {
     if (random() % 3 == 0) held.assign(random() % 9, static_cast<std::uint8_t>(random()));
+    // Often a byte or two of several.
+    for (int change = 0; change < 2 && !held.empty() && random() % 3 == 0; ++change) {
+      held[random() % held.size()] = static_cast<std::uint8_t>(random());
+    }
     const Bytes commands(random() % 5 == 0 ? random() % 17 : 0, static_cast<std::uint8_t>(random()));
     stream.append({held, commands, i + 1 == count && random() % 2 == 0 ? Control::leave : Control::none});
   }
@@ -34,6 +38,19 @@ TEST(InputStreamTest, KeepsWhatCameLastForItsCapacity) {
   EXPECT_TRUE(stream.has(5 + 300 - InputStream::kCapacity));
   EXPECT_TRUE(stream.has(304));
   EXPECT_FALSE(stream.has(305));
+}
+
+TEST(InputStreamTest, OfAnInputInWhichOneByteChangesOnlyThatIsSent) {
+  InputStream stream(8, 16);
+  stream.reset(0);
+  const Bytes first{1, 2, 3, 4, 5, 6, 7, 8}, second{1, 2, 3, 9, 5, 6, 7, 8};
+  stream.append({first, {}, Control::none});
+  stream.append({second, {}, Control::none});
+  std::array<std::uint8_t, 64> bytes;
+  PacketWriter writer(bytes);
+  encodeEntries(writer, stream, 1, 2);
+
+  EXPECT_EQ(copyOf(writer.written()), (Bytes{0, 1u << 3, 9}));
 }
 
 TEST(InputStreamTest, EveryRunOfInputsSurvivesAPacket) {

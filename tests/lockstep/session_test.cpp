@@ -207,8 +207,9 @@ TEST(SessionTest, APauseHoldsAllAndDropsNobody) {
 
 /// A commit as a peer would send it: `number` decided, `voters` go on, seat 2 is dropped with its input 20.
 std::vector<std::uint8_t> commitOf(Seat from, std::uint8_t number, std::uint8_t voters) {
-  return {7,  from, 0, 0, static_cast<std::uint8_t>(number - 1), number, 0, 0, 0, voters, 0, 4, 0,
-          20, 0,    0, 0};
+  const auto first = static_cast<std::uint8_t>(7 | from << 4);
+  const auto view = static_cast<std::uint8_t>(number - 1);
+  return {first, 0, view, number, 0, 0, 0, voters, 0, 4, 0, 20, 0, 0, 0};
 }
 
 TEST(SessionTest, ACommitThatOnePeerForgesIsRefused) {
@@ -242,9 +243,9 @@ TEST(SessionTest, WhoIsHeardIsNotDroppedBecauseOneAsks) {
   table.play(30);
   for (Seat to : {Seat{0}, Seat{3}}) {
     // Seat 1 asks to drop seat 2, and then says that all agreed.
-    table.post->put(1, to, std::vector<std::uint8_t>{3, 1, 0, 0, 0, 17, 0, 0, 0, 4, 0});
+    table.post->put(1, to, std::vector<std::uint8_t>{3 | 16, 0, 0, 17, 0, 0, 0, 4, 0});
     table.post->put(1, to,
-                    std::vector<std::uint8_t>{5, 1, 0, 0, 0, 17, 0, 0, 0, 0b1011, 0, 4, 0, 20, 0, 0, 0});
+                    std::vector<std::uint8_t>{5 | 16, 0, 0, 17, 0, 0, 0, 0b1011, 0, 4, 0, 20, 0, 0, 0});
     table.post->put(1, to, commitOf(1, 1, 0b1011));
   }
   table.play(300);
@@ -360,9 +361,8 @@ TEST(SessionTest, MalformedDatagramsAreCountedAndDropped) {
       for (std::uint8_t& byte : bytes) {
         byte = static_cast<std::uint8_t>(random() % (random() % 3 == 0 ? 256 : 4));
       }
-      bytes[0] = static_cast<std::uint8_t>(random() % 11);
-      bytes[1] = 1;
-      bytes[2] = bytes[3] = bytes[4] = 0;
+      bytes[0] = static_cast<std::uint8_t>(random() % 13 | 16);
+      bytes[1] = bytes[2] = 0;
       table.post->put(1, 0, {bytes.data(), random() % bytes.size()});
     }
     EXPECT_GT(table.sessions[0]->stats().badPackets, 20u);
@@ -377,9 +377,8 @@ TEST(SessionTest, AStrangersBytesChangeNothing) {
   for (int i = 0; i < 300; ++i) {
     std::array<std::uint8_t, 60> bytes;
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
-    bytes[0] &= 15;
-    bytes[1] = 1;
-    bytes[2] = bytes[3] = 0;
+    bytes[0] = static_cast<std::uint8_t>((bytes[0] & 15) | 16);
+    bytes[1] = bytes[2] = 0;
     table.post->put(7, 0, bytes);
     table.frame(static_cast<std::uint8_t>(i / 9));
     calm.frame(static_cast<std::uint8_t>(i / 9));
