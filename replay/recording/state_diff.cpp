@@ -270,37 +270,46 @@ struct Describer {
 namespace {
 
 /// Calls visit(object, field) for each value of a world, in the order of differences().
-template <Scalar S>
+template <class Visit>
 class ValueWalk {
  public:
-  explicit ValueWalk(const WorldState<S>& world) : world_(world) {}
+  explicit ValueWalk(Visit visit) : visit_(visit) {}
 
-  template <class Visit>
-  void each(Visit&& visit) const {
-    record("settings", world_.settings, visit);
-    record("clock", Frame<S>{world_}, visit);
-    slots("body ", world_.bodies, visit);
-    slots("shape ", world_.shapes, visit);
-    for (const Pair<S>& pair : world_.pairs) record(pairName(pair), pair, visit);
-    for (const HandlerBinding& binding : world_.handlers) record(bindingName(binding), binding, visit);
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    if constexpr (requires(FieldLister & lister) { T::fields(value, lister); }) {
+      record(name, value);
+    } else {
+      record("clock", Single<T>{name, value});
+    }
+  }
+  template <class T, class IdType>
+  void operator()(const Section& section, const SlotMap<T, IdType>& map) {
+    for (std::uint32_t slot = 0; slot < map.slots(); ++slot) {
+      const std::string object = nameOf(section, map, slot);
+      visit_(object, Field{"generation", std::to_string(map.generationAt(slot))});
+      if (map.aliveAt(slot)) record(object, map.valueAt(slot));
+    }
+  }
+  template <class T>
+  void operator()(const Section& section, const std::vector<T>& list) {
+    for (const T& entry : list) record(nameOf(section, entry), entry);
   }
 
  private:
-  template <class T, class Visit>
-  static void record(const std::string& object, const T& value, Visit&& visit) {
-    for (const Field& field : fieldsOf(value)) visit(object, field);
-  }
-  template <class Map, class Visit>
-  static void slots(const char* kind, const Map& map, Visit&& visit) {
-    for (std::uint32_t i = 0; i < map.slots(); ++i) {
-      const std::string object = kind + std::to_string(i);
-      visit(object, {"generation", std::to_string(map.generationAt(i))});
-      if (map.aliveAt(i)) record(object, map.valueAt(i), visit);
-    }
+  template <class T>
+  void record(const std::string& object, const T& value) {
+    for (const Field& field : fieldsOf(value)) visit_(object, field);
   }
 
-  const WorldState<S>& world_;
+  Visit visit_;
 };
+
+template <Scalar S, class Visit>
+void eachValue(const WorldState<S>& world, Visit&& visit) {
+  ValueWalk<Visit&> walk(visit);
+  WorldState<S>::sections(walk, world);
+}
 
 }  // namespace
 
@@ -308,7 +317,7 @@ template <Scalar S>
 std::vector<std::uint64_t> valueHashes(const WorldState<S>& world) {
   std::vector<std::uint64_t> hashes;
   std::string line;
-  ValueWalk<S>(world).each([&](const std::string& object, const Field& field) {
+  eachValue(world, [&](const std::string& object, const Field& field) {
     line.assign(object).append("\n").append(field.name).append("\n").append(field.text);
     hashes.push_back(XXH3_64bits(line.data(), line.size()));
   });
@@ -319,7 +328,7 @@ template <Scalar S>
 WorldValue valueAt(const WorldState<S>& world, std::uint32_t index) {
   WorldValue found;
   std::uint32_t passed = 0;
-  ValueWalk<S>(world).each([&](const std::string& object, const Field& field) {
+  eachValue(world, [&](const std::string& object, const Field& field) {
     if (passed++ == index) found = {object, field.name, field.text};
   });
   return found;
