@@ -207,9 +207,9 @@ class Arbiter {
   bool ignored() const { return pair_.state == ArbiterState::ignored; }
 
   /// The impulse of the last step on B, friction included, N s, saturated: what the contact changed of B's
-  /// momentum, and of A's with the other sign, all substeps together. It is a result and no state: 0 in a step
-  /// until it is solved, so in begin, preSolve and separate, and 0 after a restore or load until the next
-  /// step. MIS: arbiterTotalImpulse
+  /// momentum, and of A's with the other sign, all substeps together. It is a result and no state: 0 in a
+  /// step until it is solved, so in begin, preSolve and separate, and 0 after a restore or load until the
+  /// next step. MIS: arbiterTotalImpulse
   Vector<S> totalImpulse() const;
   /// As in Chipmunk, the sum over the points of jn^2 / nMass (1 - e) / (1 + e) + jt^2 / tMass: twice what an
   /// impact takes from the kinetic energy, J, saturated; 0 where nothing was solved.

@@ -147,10 +147,14 @@ char* write(char* to, const char* end, std::string_view text) noexcept {
   return to;
 }
 
+char* write(char* to, const char* end, const raw::DecimalText& text) noexcept {
+  return write(to, end, std::string_view(text.characters.data(), static_cast<std::size_t>(text.length)));
+}
+
 char* writeWhole(char* to, const char* end, std::int64_t number) noexcept {
   raw::DecimalText digits;
   raw::appendInteger(digits, static_cast<std::uint64_t>(number), 1);
-  return write(to, end, digits.view());
+  return write(to, end, digits);
 }
 
 /// The text of an error, which the failure handler is asked about.
@@ -185,7 +189,7 @@ constexpr std::array<Thrower, kFaults> kThrowers = throwers(std::make_index_sequ
 }  // namespace
 
 char* ErrorPart::writeNumber(char* to, const char* end, std::int64_t bits) const noexcept {
-  if (fractionBits_ >= 0) return samestep::write(to, end, raw::formatDecimal(bits, fractionBits_).view());
+  if (fractionBits_ >= 0) return samestep::write(to, end, raw::formatDecimal(bits, fractionBits_));
 #ifndef SAMESTEP_FIXED_ONLY
   return writeDecimal(to, end, __builtin_bit_cast(double, bits));
 #else
