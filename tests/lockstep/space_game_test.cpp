@@ -21,7 +21,8 @@ struct Scored {
     for (int i = 0; i < 2; ++i) {
       Body<Fixed> body(Fixed(mass), Fixed(1));
       body.setPosition({Fixed(3 * i), Fixed(0)});
-      bodies[static_cast<std::size_t>(i)] = space.add(body);
+      // A replay applies the inputs to a Space of its own.
+      bodies[static_cast<std::size_t>(i)] = space.add(body).anywhere();
       space.add(circleShape<Fixed>(bodies[static_cast<std::size_t>(i)], Fixed(1)));
     }
   }
