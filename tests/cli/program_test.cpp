@@ -145,7 +145,8 @@ TEST_F(ProgramTest, VerifyHasLimitsForRecordingsFromStrangers) {
   EXPECT_EQ(verifyWith("--max-seconds 1000 --max-bodies 100 --max-shapes 100 --max-pairs 100").code, 0);
   EXPECT_THAT(verifyWith("--max-bodies 5").error, HasSubstr("more bodies than allowed"));
   EXPECT_THAT(verifyWith("--max-shapes 5").error, HasSubstr("more shapes than allowed"));
-  EXPECT_THAT(verifyWith("--max-pairs 3").error, HasSubstr("More shapes are near each other"));
+  EXPECT_THAT(verifyWith("--max-pairs 3").error,
+              HasSubstr("more shapes are near each other than the 3 pairs allowed"));
   EXPECT_THAT(verifyWith("--max-substeps 3").error, HasSubstr("more substeps than allowed"));
   EXPECT_THAT(verifyWith("--max-iterations 9").error, HasSubstr("more iterations than allowed"));
   EXPECT_THAT(verifyWith("--max-bytes 100").error, HasSubstr("a.rec: longer than 100 bytes"));

@@ -33,7 +33,11 @@ class ArbiterTest : public ::testing::Test {
     space_.step(ratio<S>(1, 1024));
   }
   Vector<S> velocity(ShapeId shape) { return space_.body(bodyOf(space_, shape)).velocity(); }
-  Arbiter<S> make() { return {pair_, bodyA_, bodyB_, shapeA_, shapeB_}; }
+  Arbiter<S> make() {
+    shapeA_.attach(pair_.a);
+    shapeB_.attach(pair_.b);
+    return {pair_, bodyA_, bodyB_, shapeA_, shapeB_};
+  }
 
   Space<S> space_;
   ShapeId a_, b_;

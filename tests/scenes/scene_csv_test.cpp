@@ -81,7 +81,8 @@ TYPED_TEST(SceneCsvTest, MalformedTablesAreRefusedWithLineAndReason) {
   EXPECT_THAT(saidOf("a,dynamic,1e99,2,0,0,0,0,circle,1,0," + kNoVertices), StartsWith("table:2: "));
   EXPECT_THAT(saidOf(place + "square,1,0," + kNoVertices),
               StartsWith("table:2: /shape: circle or polygon is wanted"));
-  EXPECT_THAT(saidOf(place + "circle,-1,0," + kNoVertices), HasSubstr("Radius should be nonnegative"));
+  EXPECT_THAT(saidOf(place + "circle,-1,0," + kNoVertices),
+              HasSubstr("radius is -1 m, allowed are 0 and above"));
   for (const char* n : {"", "9", "-1", "33", "x"}) {
     EXPECT_THAT(saidOf(place + "polygon,0," + n + "," + kNoVertices),
                 StartsWith("table:2: /n: a number from 0 to 8 is wanted"))
