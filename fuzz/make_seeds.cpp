@@ -49,9 +49,20 @@ void writeSeeds(const std::filesystem::path& folder, const std::string& name, st
   snapshot[0] = static_cast<std::uint8_t>(kind | 2);
   saveSnapshot(scene.space(), std::span(snapshot).subspan(1));
   write(folder / "snapshot" / (file + "-whole"), snapshot);
+}
 
+/// The next steps of a scene, with a command of each kind, keyframes, claims and notes.
+template <Scalar S>
+void writeRecording(const std::filesystem::path& path, const std::string& name, int ticks, bool packing) {
+  Scene<S> scene(SceneSource::find(name));
+  if (scene.space().bodyCount() > kMostBodies) return;
+  for (int i = 0; i < ticks; ++i) scene.step();
   Bytes recording;
   Recorder<S> recorder(scene.space(), scene.timeStep(), recording, namedHandlerWiring<S>());
+  recorder.setPacking(packing);
+  // Those of five steps are small enough without.
+  recorder.setKeyframes({ticks == 5 ? 0u : 3u, 1u << 20});
+  recorder.note("scene", name);
   for (int i = 0; i < 6; ++i) {
     while (const Command<S>* command = scene.nextCommand()) recorder.apply(*command);
     if (i == 2) {
@@ -66,9 +77,10 @@ void writeSeeds(const std::filesystem::path& folder, const std::string& name, st
       recorder.apply(Remove{body});
     }
     recorder.step();
+    if (i == 3) recorder.claim("samestep.bodies", namedClaim(scene.space(), "samestep.bodies"));
   }
   recorder.finish();
-  write(folder / "recording" / file, recording);
+  write(path, recording);
 }
 
 }  // namespace
@@ -82,6 +94,11 @@ int main(int argc, char** argv) {
     for (const int ticks : {0, 5, 30}) {
       writeSeeds<Fixed>(argv[1], name, 0, ticks);
       writeSeeds<double>(argv[1], name, 1, ticks);
+      const std::filesystem::path path =
+          std::filesystem::path(argv[1]) / "recording" / (name + ("-" + std::to_string(ticks)));
+      writeRecording<Fixed>(path.string() + "-fixed", name, ticks, false);
+      writeRecording<double>(path.string() + "-double", name, ticks, false);
+      if (packingAvailable()) writeRecording<Fixed>(path.string() + "-packed", name, ticks, true);
     }
   }
   return 0;

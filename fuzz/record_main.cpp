@@ -13,6 +13,7 @@
 #include <samestep/snapshot.h>
 
 #include "mend.h"
+#include "support/recording_sections.h"
 #include "world_bytes.h"
 
 namespace {
@@ -51,7 +52,7 @@ Bytes recordingOf(const std::string& target, Bytes input) {
     return world.isDouble ? recordWorld<double>(world) : recordWorld<Fixed>(world);
   }
   mendRevision(input);
-  mendChecksum(input);
+  mendRecording(input);
   return input;
 }
 

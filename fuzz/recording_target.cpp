@@ -10,6 +10,7 @@
 #include "check.h"
 #include "input.h"
 #include "mend.h"
+#include "support/recording_sections.h"
 #include "world_bytes.h"
 
 namespace samestep::fuzz {
@@ -31,24 +32,52 @@ Wiring<S> wiring() {
   return result;
 }
 
+/// What a recording holds beside its items: worlds that can be read or are refused, in their order.
+template <Scalar S>
+void readBeside(const RecordingReader<S>& reader, std::size_t size) {
+  std::uint64_t tick = 0;
+  for (std::size_t i = 0; i < reader.keyframes().size(); ++i) {
+    const Keyframe& keyframe = reader.keyframes()[i];
+    expect(i == 0 ? keyframe.tick == 0 : keyframe.tick > tick, "keyframes are in order");
+    expect(keyframe.offset + keyframe.bytes <= size, "a keyframe is within the bytes");
+    tick = keyframe.tick;
+    try {
+      const WorldState<S> world = reader.world(i, kFuzzLimits);
+      expect(reader.isWorld(i, world), "a world has one encoding");
+    } catch (const FormatError& error) {
+      expect(error.offset() <= size, "the offset of a fault is within the bytes");
+    }
+  }
+  expect(tick <= reader.ticks(), "no keyframe is after the end");
+  for (const Note& note : reader.notes()) expect(!note.key.empty(), "a key is not empty");
+}
+
 /// @return the hashes of the steps replayed
 template <Scalar S>
-std::vector<std::uint64_t> run(const Bytes& bytes, std::uint64_t ticks) {
+std::vector<std::uint64_t> run(const Bytes& bytes, std::uint64_t ticks, Ending ending) {
   std::vector<std::uint64_t> hashes;
   try {
-    RecordingReader<S> reader(bytes, kFuzzLimits);
+    RecordingReader<S> reader(bytes, kFuzzLimits, {}, ending);
+    readBeside(reader, bytes.size());
     std::uint64_t steps = 0;
     for (;;) {
       const RecordingItem item = reader.next();
-      expect(reader.offset() < bytes.size(), "an item is within the bytes");
+      expect(reader.offset() <= bytes.size(), "an item is within the bytes");
       if (item == RecordingItem::end) break;
+      expect(reader.itemAt() < reader.nextAt() && reader.nextAt() <= reader.items().size(),
+             "an item is within its section");
       if (item == RecordingItem::step) ++steps;
     }
     expect(steps == reader.ticks(), "the steps are as many as the end says");
     const Settings<S>& settings = reader.initialWorld().settings;
     if (ticks == 0 || settings.iterations > 20 || settings.substeps > 8) return hashes;
-    Replay<S> replay(bytes, wiring<S>(), kFuzzLimits);
+    Replay<S> replay(bytes, wiring<S>(), kFuzzLimits, {}, ending);
     while (replay.tick() < ticks && replay.step()) hashes.push_back(replay.space().hash());
+    if (hashes.size() > 1) {
+      replay.seek(1);
+      expect(replay.space().hash() == hashes[0] || replay.reader().keyframes().size() > 1,
+             "a step made again gives the same world");
+    }
   } catch (const FormatError& error) {
     expect(error.offset() <= bytes.size(), "the offset of a fault is within the bytes");
   } catch (const Error&) {
@@ -69,17 +98,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // As it came in one of eight.
   if (size > 0 && data[size - 1] % 8 != 0) {
     mendRevision(bytes);
-    mendChecksum(bytes);
+    mendRecording(bytes, size > 1 && data[size - 2] % 4 != 0);
   }
+  const Ending ending = (mixed(data, size) & 8) != 0 ? Ending::mayBeCut : Ending::whole;
   try {
     if (recordingInfo(bytes).scalar == ScalarKind::float64) {
-      run<double>(bytes, ticks);
+      run<double>(bytes, ticks, ending);
       return 0;
     }
   } catch (const FormatError& error) {
     expect(error.offset() <= bytes.size(), "the offset of a fault is within the bytes");
     return 0;
   }
-  expect(run<CheckedFixed>(bytes, ticks) == run<Fixed>(bytes, ticks), "Fixed does what CheckedFixed does");
+  expect(run<CheckedFixed>(bytes, ticks, ending) == run<Fixed>(bytes, ticks, ending),
+         "Fixed does what CheckedFixed does");
   return 0;
 }

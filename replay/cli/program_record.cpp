@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 
+#include <samestep/named_handlers.h>
 #include <samestep/recorder.h>
 #include <samestep/scene.h>
 
@@ -14,7 +15,30 @@ struct Options {
   std::string file;
   std::string scalar = "fixed";
   std::uint64_t ticks = 0;
+  std::vector<std::string> claims;
+  std::vector<std::string> notes;
+  bool pack = false;
 };
+
+/// "KEY=VALUE"; the value of a claim may be left out where the program knows it.
+std::pair<std::string, std::string> keyAndValue(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  return {text.substr(0, sign), sign == std::string::npos ? std::string() : text.substr(sign + 1)};
+}
+
+template <Scalar S>
+void recordWords(const Options& options, Recorder<S>& recorder, const Space<S>& space) {
+  for (const std::string& claim : options.claims) {
+    auto [key, value] = keyAndValue(claim);
+    if (claim.find('=') == std::string::npos) value = namedClaim(space, key);
+    if (value.empty()) throw Unusable("--claim " + claim + ": what it is must be given, as KEY=VALUE");
+    recorder.claim(key, value);
+  }
+  for (const std::string& note : options.notes) {
+    const auto [key, value] = keyAndValue(note);
+    recorder.note(key, value);
+  }
+}
 
 template <Scalar S>
 int run(const Options& options) {
@@ -24,6 +48,7 @@ int run(const Options& options) {
   Scene<S> scene(source);
   std::vector<std::uint8_t> bytes;
   Recorder<S> recorder(scene.space(), scene.timeStep(), bytes);
+  recorder.setPacking(options.pack);
   Progress progress("record", ticks);
   std::uint64_t commands = 0;
   for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
@@ -38,6 +63,7 @@ int run(const Options& options) {
     }
     progress.at(tick);
   }
+  recordWords(options, recorder, scene.space());
   recorder.finish();
   writeFile(options.file, bytes);
   std::printf("%s: %llu ticks of %s in %s, %llu commands, %llu bytes\n", options.file.c_str(),
@@ -58,6 +84,14 @@ void addRecord(CLI::App& app, int& result) {
   word->add_option("-o,--output", options->file, "The recording to write")->required();
   addScalarOption(*word, options->scalar);
   addTicksOption(*word, options->ticks);
+  word->add_option(
+          "--claim", options->claims,
+          "KEY=VALUE: say this of the world at the end; the value of samestep.bodies, samestep.hash and "
+          "samestep.user-data.N need not be given")
+      ->allow_extra_args(false);
+  word->add_option("--note", options->notes, "KEY=VALUE: write this down beside the match")
+      ->allow_extra_args(false);
+  if (packingAvailable()) word->add_flag("--pack", options->pack, "Pack the recording by zstd");
   word->callback([options, &result] {
     result = withScalar(options->scalar, [&](auto scalar) { return run<decltype(scalar)>(*options); });
   });

@@ -12,6 +12,14 @@
 namespace samestep::program {
 namespace {
 
+/// A stranger's bytes, with what a terminal would take for orders shown as dots.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    if (c < ' ' || c > '~') c = '.';
+  }
+  return text;
+}
+
 void report(const std::string& file, const VerifyResult& result, std::int64_t milliseconds) {
   if (result.unexpected != nullptr) {
     std::printf("%s: UNEXPECTED: %s is not as expected", file.c_str(), result.unexpected);
@@ -19,6 +27,19 @@ void report(const std::string& file, const VerifyResult& result, std::int64_t mi
       std::printf(" (offset %llu)", static_cast<unsigned long long>(result.unexpectedOffset));
     }
     std::printf("\n");
+    return;
+  }
+  if (!result.matches && result.falseClaim && result.recordedHash == result.computedHash) {
+    const ClaimAt& claim = *result.falseClaim;
+    std::printf("%s: FALSE CLAIM: after tick %llu, %s is not %s\n", file.c_str(),
+                static_cast<unsigned long long>(claim.tick), printable(claim.key).c_str(),
+                printable({claim.value.begin(), claim.value.end()}).c_str());
+    return;
+  }
+  if (result.keyframeDiffers) {
+    std::printf("%s: MISMATCH at tick %llu of %llu: the keyframe there is another world\n", file.c_str(),
+                static_cast<unsigned long long>(result.firstWrongTick),
+                static_cast<unsigned long long>(result.ticks));
     return;
   }
   if (!result.matches) {

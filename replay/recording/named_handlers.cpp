@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/named_handlers.h>
 
+#include <charconv>
+
 #include "base/require_ieee.h"
 
 namespace samestep {
 namespace {
+
+constexpr std::string_view kClaimPrefix = "samestep.";
 
 template <Scalar S>
 struct Handlers {
@@ -91,6 +95,21 @@ void connectNamedHandlers(Space<S>& space, void*) {
   registerNamedHandlers(space);
 }
 
+template <Scalar S>
+ClaimCheck checkNamedClaim(const Space<S>& space, std::string_view key, std::span<const std::uint8_t> value,
+                           void*) {
+  if (!key.starts_with(kClaimPrefix)) return ClaimCheck::unknown;
+  const std::string right = namedClaim(space, key);
+  const std::string_view said(reinterpret_cast<const char*>(value.data()), value.size());
+  return !right.empty() && said == right ? ClaimCheck::holds : ClaimCheck::isFalse;
+}
+
+std::string hexText(std::uint64_t value) {
+  std::string text(16, '0');
+  for (std::size_t i = 0; i < 16; ++i) text[15 - i] = "0123456789abcdef"[value >> (4 * i) & 15];
+  return text;
+}
+
 }  // namespace
 
 CallbackNumber handlerNumber(std::string_view name) {
@@ -108,12 +127,28 @@ void registerNamedHandlers(Space<S>& space) {
 }
 
 template <Scalar S>
-Wiring<S> namedHandlerWiring() {
-  return {.connect = connectNamedHandlers<S>};
+std::string namedClaim(const Space<S>& space, std::string_view key) {
+  constexpr std::string_view kUserData = "samestep.user-data.";
+  if (key == "samestep.bodies") return std::to_string(space.bodyCount());
+  if (key == "samestep.hash") return hexText(space.hash());
+  if (!key.starts_with(kUserData)) return {};
+  const std::string_view digits = key.substr(kUserData.size());
+  std::uint32_t index = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  if (error != std::errc() || end != digits.data() + digits.size()) return {};
+  const auto& bodies = space.state().bodies;
+  if (index >= bodies.slots() || !bodies.aliveAt(index)) return {};
+  return std::to_string(bodies.valueAt(index).userData());
 }
 
-#define SAMESTEP_EACH_SCALAR                         \
-  template void registerNamedHandlers<S>(Space<S>&); \
+template <Scalar S>
+Wiring<S> namedHandlerWiring() {
+  return {.connect = connectNamedHandlers<S>, .checkClaim = checkNamedClaim<S>};
+}
+
+#define SAMESTEP_EACH_SCALAR                                             \
+  template void registerNamedHandlers<S>(Space<S>&);                     \
+  template std::string namedClaim<S>(const Space<S>&, std::string_view); \
   template Wiring<S> namedHandlerWiring<S>();
 #include <samestep/each_scalar.h>
 

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/recorder.h>
 
-#include <samestep/make_room.h>
 #include <samestep/version.h>
 
 #include <memory>
+#include <new>
 #include <variant>
 
 #include "base/require_ieee.h"
 #include "recording/recording_format.h"
+#include "recording/recording_writer.h"
 #include "state/canonical_bytes.h"
-#include "state/state_hash.h"
 
 namespace samestep {
 namespace {
-
-constexpr std::size_t kPieceBytes = 8192;
 
 void appendTo(std::span<const std::uint8_t> bytes, void* data) {
   auto& all = *static_cast<std::vector<std::uint8_t>*>(data);
@@ -55,6 +53,10 @@ void requireRecordableInput(std::size_t bytes) {
                                   " bytes, allowed are up to ", kMaxInputBytes);
 }
 
+void requireKey(std::string_view key) {
+  require<Fault::ValueOutOfRange>(!key.empty() && key.size() <= kMaxKeyBytes, "A key has 1 to 255 bytes.");
+}
+
 template <Scalar S>
 void requireRecordable(const Command<S>& command) {
   if (const auto* spawn = std::get_if<Spawn<S>>(&command)) {
@@ -72,67 +74,31 @@ struct Recorder<S>::Impl {
   Impl(Space<S>& spaceIn, S timeStepIn, ByteSink sinkIn, void* dataIn, const Wiring<S>& wiringIn)
       : space(spaceIn),
         timeStep(timeStepIn),
-        sink(sinkIn),
-        data(dataIn),
         wiring(wiringIn),
         startStamp(space.stamp()),
         stamp(space.stamp()),
-        broughtIn(space.worldsBroughtIn()) {
-    XXH3_64bits_reset(&checksum);
-    setRewindTicks(kDefaultRewindTicks);
-  }
+        broughtIn(space.worldsBroughtIn()),
+        out(sinkIn, dataIn) {}
 
   void begin() {
-    for (const std::uint8_t byte : kRecordingMagic) write.put(byte);
-    write.put(kRecordingVersion);
-    write.put(kSimulationRevision);
-    write.put(ScalarTraits<S>::kKind);
-    for (int i = 0; i < 3; ++i) write.put(std::uint8_t{0});
-    write.put(timeStep);
-    encodeWorld(space.state(), piece);
+    std::vector<std::uint8_t> header;
+    BytesSink sink(header);
+    CanonicalWriter<BytesSink> put(sink);
+    for (const std::uint8_t byte : kRecordingMagic) put.put(byte);
+    put.put(kRecordingVersion);
+    put.put(kSimulationRevision);
+    put.put(ScalarTraits<S>::kKind);
+    for (int i = 0; i < 3; ++i) put.put(std::uint8_t{0});
+    put.put(timeStep);
+    std::vector<std::uint8_t> world;
+    encodeWorld(space.state(), world);
     lastHash = space.hash();
-    write.put(lastHash);
-    addMark();
-    piece.reserve(piece.size() + 2 * kPieceBytes);
-    flushWhenFull();
+    out.begin(header, lastHash, world);
   }
 
-  /// The end of a step in the recording; the one with tick 0 is that of the first world.
-  struct Mark {
-    std::uint64_t end = 0;  ///< Bytes of the recording up to here.
-    std::uint64_t hash = 0;
-  };
-  Mark& markOf(std::uint64_t tick) { return marks[static_cast<std::size_t>(tick % marks.size())]; }
-  void addMark() {
-    markOf(ticks) = {given + piece.size(), lastHash};
-    if (ticks - oldest >= marks.size()) oldest = ticks - marks.size() + 1;
-  }
-  void setRewindTicks(std::uint32_t most) {
-    std::vector<Mark> kept(std::size_t{most} + 1);
-    const std::uint64_t first = ticks - oldest > most ? ticks - most : oldest;
-    for (std::uint64_t tick = first; tick <= ticks && !marks.empty(); ++tick) {
-      kept[static_cast<std::size_t>(tick % kept.size())] = markOf(tick);
-    }
-    marks = std::move(kept);
-    oldest = first;
-  }
-
-  void give(std::size_t bytes) {
-    // First, for it may throw: they are then given once more.
-    sink({piece.data(), bytes}, data);
-    XXH3_64bits_update(&checksum, piece.data(), bytes);
-    piece.erase(piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(bytes));
-    given += bytes;
-  }
-  /// Gives away what can no longer be taken back.
-  void flushWhenFull() {
-    const std::uint64_t settled = markOf(oldest).end;
-    if (settled >= given + kPieceBytes) give(static_cast<std::size_t>(settled - given));
-  }
-  void cutAfter(std::uint64_t tick) {
-    ticks = tick;
-    piece.resize(static_cast<std::size_t>(markOf(tick).end - given));
-    lastHash = markOf(tick).hash;
+  void rewind(std::uint64_t tick) {
+    out.rewind(tick);
+    lastHash = out.hashAfter(tick);
     stamp = startStamp + tick;
   }
   /// Goes back to the step that the Space was restored to, if it was.
@@ -140,13 +106,13 @@ struct Recorder<S>::Impl {
   void followRestore(std::uint64_t made) {
     if (space.worldsBroughtIn() == broughtIn) return;
     const std::uint64_t to = space.stamp() - made;
-    const bool known = to >= startStamp + oldest && to <= stamp;
+    const bool known = to >= startStamp + out.oldest() && to <= stamp;
     require<Fault::ForeignWorld>(known,
                                  "The world was restored to a step that the recorder cannot go back to.");
     const std::uint64_t tick = to - startStamp;
-    require<Fault::ForeignWorld>(made > 0 || markOf(tick).hash == space.hash(),
+    require<Fault::ForeignWorld>(made > 0 || out.hashAfter(tick) == space.hash(),
                                  "The world was restored to one that is not the recording's after a step.");
-    cutAfter(tick);
+    rewind(tick);
     broughtIn = space.worldsBroughtIn();
   }
   void check() const {
@@ -158,71 +124,81 @@ struct Recorder<S>::Impl {
   template <class Apply, class Written>
   BodyId record(CommandKind kind, const Written& written, Apply&& apply) {
     struct CutOff {
-      std::vector<std::uint8_t>& piece;
+      std::vector<std::uint8_t>& items;
       std::size_t end;
-      ~CutOff() { piece.resize(end); }
+      ~CutOff() { items.resize(end); }
     };
     followRestore(0);
     check();
-    CutOff kept{piece, piece.size()};
+    CutOff kept{out.items(), out.items().size()};
     write.put(RecordingItem::command);
     write.put(kind);
-    CommandWriter<S> writer{write, pieceSink};
+    CommandWriter<S> writer{write, itemsSink};
     if constexpr (requires { std::visit(writer, written); }) {
       std::visit(writer, written);
     } else {
       writer(written);
     }
     const BodyId id = apply();
-    kept.end = piece.size();
+    kept.end = out.items().size();
     if (checking) lastHash = space.hash();
     return id;
   }
-  /// So that recordStep takes no memory.
-  void makeRoomForStep() { makeRoom(piece, piece.size() + sizeof(RecordingItem) + sizeof lastHash); }
-  void confirm(std::uint64_t upTo) {
-    oldest = max(oldest, upTo);
-    flushWhenFull();
+  /// Where there is no memory for it, there is none: the step is recorded.
+  void takeKeyframe() {
+#if defined(__cpp_exceptions)
+    try {
+      if (std::vector<std::uint8_t>* keyframe = out.keyframeDue()) {
+        encodeWorld(space.state(), *keyframe);
+        out.endKeyframe();
+      }
+    } catch (const std::bad_alloc&) {
+      out.dropKeyframe();
+    }
+#else
+    if (std::vector<std::uint8_t>* keyframe = out.keyframeDue()) {
+      encodeWorld(space.state(), *keyframe);
+      out.endKeyframe();
+    }
+#endif
   }
-  void end() {
-    makeRoom(piece, piece.size() + sizeof(RecordingItem) + 2 * sizeof(std::uint64_t));
-    finished = true;
-    write.put(RecordingItem::end);
-    write.put(ticks);
-    give(piece.size());
-    write.put(static_cast<std::uint64_t>(XXH3_64bits_digest(&checksum)));
-    sink(piece, data);
-  }
+  /// @pre out.prepareTick(): takes no memory
   std::uint64_t recordStep() {
     stamp = space.stamp();
-    ++ticks;
     lastHash = space.hash();
     write.put(RecordingItem::step);
     write.put(lastHash);
-    addMark();
-    flushWhenFull();
+    out.endTick(lastHash);
+    takeKeyframe();
     return lastHash;
+  }
+  void claim(std::string_view key, std::span<const std::uint8_t> value) {
+    followRestore(0);
+    std::vector<std::uint8_t>& item = claimItem;
+    item.clear();
+    BytesSink sink(item);
+    CanonicalWriter<BytesSink> put(sink);
+    put.put(RecordingItem::claim);
+    put.put(static_cast<std::uint8_t>(key.size()));
+    item.insert(item.end(), key.begin(), key.end());
+    put.put(static_cast<std::uint32_t>(value.size()));
+    item.insert(item.end(), value.begin(), value.end());
+    out.insertAfterTick(item);
   }
 
   Space<S>& space;
   S timeStep;
-  ByteSink sink;
-  void* data;
   Wiring<S> wiring;
   std::uint64_t startStamp;
   std::uint64_t stamp;
   std::uint64_t broughtIn;  ///< Of the worlds that the Space was given, how many are known here.
-  std::uint64_t ticks = 0;
-  std::uint64_t oldest = 0;  ///< The first tick that can be gone back to.
-  std::uint64_t given = 0;   ///< Bytes that the sink has.
   std::uint64_t lastHash = 0;
   bool checking = false;
   bool finished = false;
-  std::vector<std::uint8_t> piece;  ///< Bytes that the sink does not have yet.
-  std::vector<Mark> marks;          ///< A ring of the ticks that can be gone back to.
-  BytesSink pieceSink{piece};
-  CanonicalWriter<BytesSink> write{pieceSink};
-  XXH3_state_t checksum;
+  RecordingWriter out;
+  BytesSink itemsSink{out.items()};
+  CanonicalWriter<BytesSink> write{itemsSink};
+  std::vector<std::uint8_t> claimItem;
 };
 
 template <Scalar S>
@@ -266,7 +242,7 @@ template <Scalar S>
 std::uint64_t Recorder<S>::step() {
   impl_->followRestore(0);
   impl_->check();
-  impl_->makeRoomForStep();
+  impl_->out.prepareTick();
   impl_->space.step(impl_->timeStep);
   return impl_->recordStep();
 }
@@ -278,20 +254,50 @@ std::uint64_t Recorder<S>::stepped() {
                                "stepped() is called once after each step.");
   require<Fault::ForeignWorld>(impl_->space.currentTimeStep() == impl_->timeStep,
                                "The step was not as long as those of the recording.");
-  impl_->makeRoomForStep();
+  impl_->out.prepareTick();
   return impl_->recordStep();
 }
 
 template <Scalar S>
 void Recorder<S>::confirm(std::uint64_t ticks) {
-  require<Fault::ValueOutOfRange>(ticks <= impl_->ticks, "Only steps that are recorded can be confirmed.");
-  impl_->confirm(ticks);
+  require<Fault::ValueOutOfRange>(ticks <= impl_->out.ticks(),
+                                  "Only steps that are recorded can be confirmed.");
+  impl_->out.confirm(ticks);
 }
 
 template <Scalar S>
 void Recorder<S>::setRewindTicks(std::uint32_t ticks) {
   require<Fault::ValueOutOfRange>(ticks <= kMostRewindTicks, "At most 2^15 steps can be taken back.");
-  impl_->setRewindTicks(ticks);
+  impl_->out.setRewindTicks(ticks);
+}
+
+template <Scalar S>
+void Recorder<S>::setKeyframes(const KeyframeBudget& budget) {
+  impl_->out.setKeyframes(budget);
+}
+
+template <Scalar S>
+void Recorder<S>::setPacking(bool packing) {
+  impl_->out.setPacking(packing);
+}
+
+template <Scalar S>
+void Recorder<S>::claim(std::string_view key, std::span<const std::uint8_t> value) {
+  requireKey(key);
+  require<Fault::ValueOutOfRange>(value.size() <= kMaxClaimBytes, "A claim has at most 4096 bytes.");
+  impl_->claim(key, value);
+}
+
+template <Scalar S>
+void Recorder<S>::claim(std::string_view key, std::string_view value) {
+  claim(key, std::span(reinterpret_cast<const std::uint8_t*>(value.data()), value.size()));
+}
+
+template <Scalar S>
+void Recorder<S>::note(std::string_view key, std::string_view value) {
+  requireKey(key);
+  require<Fault::ValueOutOfRange>(value.size() <= kMaxNoteBytes, "A note has at most 2^16 bytes.");
+  impl_->out.note(key, value);
 }
 
 template <Scalar S>
@@ -304,21 +310,22 @@ template <Scalar S>
 void Recorder<S>::finish() {
   if (impl_->finished) return;
   impl_->followRestore(0);
-  finish(impl_->ticks);
+  finish(impl_->out.ticks());
 }
 
 template <Scalar S>
 void Recorder<S>::finish(std::uint64_t ticks) {
   if (impl_->finished) return;
-  require<Fault::ValueOutOfRange>(ticks >= impl_->oldest && ticks <= impl_->ticks,
+  require<Fault::ValueOutOfRange>(ticks >= impl_->out.oldest() && ticks <= impl_->out.ticks(),
                                   "The recorder cannot end after that step.");
-  impl_->cutAfter(ticks);
-  impl_->end();
+  impl_->rewind(ticks);
+  impl_->finished = true;
+  impl_->out.finish();
 }
 
 template <Scalar S>
 std::uint64_t Recorder<S>::ticks() const {
-  return impl_->ticks;
+  return impl_->out.ticks();
 }
 
 #define SAMESTEP_EACH_SCALAR template class Recorder<S>;

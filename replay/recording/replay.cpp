@@ -22,10 +22,9 @@ bool asksForMore(const Command<S>& command, const RecordingLimits& limits) {
 
 template <Scalar S>
 Replay<S>::Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const RecordingLimits& limits,
-                  const Interrupt& interrupt)
-    : bytes_(bytes),
-      interrupt_(interrupt),
-      reader_(bytes, limits, interrupt),
+                  const Interrupt& interrupt, Ending ending)
+    : interrupt_(interrupt),
+      reader_(bytes, limits, interrupt, ending),
       wiring_(wiring),
       limits_(limits),
       recordedHash_(reader_.initialHash()) {
@@ -55,13 +54,15 @@ void Replay<S>::act(Action&& action) {
 template <Scalar S>
 bool Replay<S>::applyCommands() {
   if (applied_ || ended_) return !ended_;
-  commandsBegin_ = commandsEnd_ = reader_.nextOffset();
+  while (nextClaim() != nullptr) continue;
   RecordingItem item = reader_.next();
+  commandsBegin_ = reader_.itemAt();
   for (; item == RecordingItem::command; item = reader_.next()) {
     if (asksForMore(reader_.command(), limits_)) {
       failFormat(reader_.offset(), "more bodies or shapes than allowed");
     }
     if (filter_ != nullptr && !filter_(reader_.command(), reader_.offset(), filterData_)) {
+      commandsEnd_ = commandsBegin_;
       ended_ = true;
       return false;
     }
@@ -72,10 +73,36 @@ bool Replay<S>::applyCommands() {
       failFormat(reader_.offset(), "more bodies or shapes than allowed");
     }
   }
-  commandsEnd_ = reader_.offset();
+  commandsEnd_ = reader_.itemAt();
   applied_ = true;
   ended_ = item == RecordingItem::end;
   return !ended_;
+}
+
+template <Scalar S>
+const Claim* Replay<S>::nextClaim() {
+  if (applied_ || ended_ || !reader_.claimFollows()) return nullptr;
+  reader_.next();
+  return &reader_.claim();
+}
+
+template <Scalar S>
+void Replay<S>::seek(std::uint64_t tick) {
+  require<Fault::ValueOutOfRange>(tick <= ticks(), "The recording ends before that step.");
+  const std::span<const Keyframe> keyframes = reader_.keyframes();
+  std::size_t last = keyframes.size() - 1;
+  while (keyframes[last].tick > tick) --last;
+  // Playing on is enough where no keyframe is nearer.
+  const bool ahead = tick_ <= tick && tick_ >= keyframes[last].tick && !applied_ && !ended_;
+  if (!ahead) {
+    space_.adopt(last == 0 ? reader_.initialWorld() : reader_.world(last, limits_));
+    reader_.seek(last);
+    tick_ = keyframes[last].tick;
+    recordedHash_ = keyframes[last].hash;
+    commandsBegin_ = commandsEnd_ = reader_.itemAt();
+    applied_ = ended_ = false;
+  }
+  while (tick_ < tick && step()) continue;
 }
 
 template <Scalar S>

@@ -49,33 +49,68 @@ struct CommandWatch {
   }
 };
 
+/// Compares each keyframe with the world that it stands for.
+template <Scalar S>
+class KeyframeWatch {
+ public:
+  /// Whether there is none for the world as it is now, or it is that world.
+  bool agrees(const Replay<S>& replay) {
+    const auto keyframes = replay.reader().keyframes();
+    if (next_ == keyframes.size() || keyframes[next_].tick != replay.tick()) return true;
+    return replay.reader().isWorld(next_++, replay.space().state());
+  }
+
+ private:
+  std::size_t next_ = 0;
+};
+
+template <Scalar S>
+void checkClaims(Replay<S>& replay, const Wiring<S>& wiring, VerifyResult& result) {
+  while (const Claim* claim = replay.nextClaim()) {
+    const ClaimCheck check = wiring.checkClaim == nullptr
+                                 ? ClaimCheck::unknown
+                                 : wiring.checkClaim(replay.space(), claim->key, claim->value, wiring.data);
+    if (check == ClaimCheck::holds) ++result.claimsThatHold;
+    if (check == ClaimCheck::unknown) ++result.claimsUnknown;
+    if (check != ClaimCheck::isFalse) continue;
+    ++result.claimsThatAreFalse;
+    if (result.falseClaim) continue;
+    result.falseClaim = ClaimAt{replay.tick(), std::string(claim->key), {}};
+    result.falseClaim->value.assign(claim->value.begin(), claim->value.end());
+  }
+}
+
 /// Replays all of it.
 template <Scalar S>
 void verifyInto(VerifyResult& result, std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
                 const VerifyOptions& options) {
-  Replay<S> replay(bytes, wiring, options.limits, options.interrupt);
+  Replay<S> replay(bytes, wiring, options.limits, options.interrupt, options.ending);
   replay.space().forceKernel(options.kernel);
   replay.space().setWorkers(options.workers, Sharing::always);
   result.ticks = replay.ticks();
+  result.cut = !replay.reader().isWhole();
   if (replay.space().stamp() > options.mostFirstTick)
     failFormat(kWorldAt, "begins after more steps than allowed");
   result.unexpected = unexpectedIn(replay, options.expected);
   if (result.unexpected != nullptr) return;
   CommandWatch<S> watch{options.expected.commands, result};
   replay.setCommandFilter(CommandWatch<S>::filter, &watch);
+  KeyframeWatch<S> keyframes;
   do {
     result.recordedHash = replay.recordedHash();
     result.computedHash = replay.space().hash();
-    if (result.recordedHash != result.computedHash) {
+    result.keyframeDiffers = result.recordedHash == result.computedHash && !keyframes.agrees(replay);
+    if (result.recordedHash != result.computedHash || result.keyframeDiffers) {
       result.firstWrongTick = replay.tick();
       return;
     }
+    checkClaims(replay, wiring, result);
     if (options.progress != nullptr && !options.progress(replay.tick(), replay.ticks(), options.data)) {
       result.stopped = true;
       return;
     }
   } while (replay.step());
-  result.matches = result.unexpected == nullptr;
+  result.matches = result.unexpected == nullptr && result.claimsThatAreFalse == 0;
 }
 
 }  // namespace

@@ -1,27 +1,41 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <samestep/named_handlers.h>
 #include <samestep/recorder.h>
+#include "support/recording_sections.h"
 #include "support/world.h"
 
 namespace samestep {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Writes the checksum again that recordings end with, after something before it was changed.
-inline void mendChecksum(Bytes& bytes) {
-  if (bytes.size() < 8) return;
-  const std::uint64_t checksum = XXH3_64bits(bytes.data(), bytes.size() - 8);
-  for (unsigned i = 0; i < 8; ++i)
-    bytes[bytes.size() - 8 + i] = static_cast<std::uint8_t>(checksum >> (8 * i));
+/// Writes all hashes again, after something before them was changed.
+inline void mendChecksum(Bytes& bytes) { mendRecording(bytes); }
+
+/// The same match as a recording of version 2 told it, without claims, notes and keyframes.
+template <Scalar S>
+Bytes asVersion2(const Bytes& bytes) {
+  Bytes old(bytes.begin(), bytes.begin() + by_hand::kHeaderBytes);
+  old[8] = 2;
+  RecordingReader<S> reader(bytes);
+  encodeWorld(reader.initialWorld(), old);
+  by_hand::addNumber(old, reader.initialHash(), 8);
+  for (RecordingItem item = reader.next(); item != RecordingItem::end; item = reader.next()) {
+    const auto from = reader.items().begin();
+    if (item == RecordingItem::claim) continue;
+    old.insert(old.end(), from + static_cast<std::ptrdiff_t>(reader.itemAt()),
+               from + static_cast<std::ptrdiff_t>(reader.nextAt()));
+  }
+  old.push_back(2);
+  by_hand::addNumber(old, reader.ticks(), 8);
+  by_hand::addNumber(old, 0, 8);
+  mendChecksum(old);
+  return old;
 }
 
 /// The game's own input of the tests: its first byte is the user data that the static body gets.
@@ -69,11 +83,13 @@ BodyId fillSmall(Space<S>& space) {
 
 /// A match of `ticks` steps with each kind of command in it.
 template <Scalar S>
-Bytes recordSmallMatch(std::uint32_t ticks = 24) {
+Bytes recordSmallMatch(std::uint32_t ticks = 24, const KeyframeBudget& keyframes = {}, bool packing = false) {
   Space<S> space;
   const BodyId player = fillSmall(space);
   Bytes bytes;
   Recorder<S> recorder(space, kTick<S>, bytes, testWiring<S>());
+  recorder.setKeyframes(keyframes);
+  recorder.setPacking(packing);
   BodyId spawned;
   for (std::uint32_t tick = 1; tick <= ticks; ++tick) {
     if (tick == 2) recorder.apply(ApplyImpulse<S>{player, {S(1), S(3)}, {ratio<S>(1, 4), S(0)}});

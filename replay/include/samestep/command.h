@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -148,6 +149,13 @@ CommandKind kindOf(const Command<S>& command) {
 /// "impulse", "spawn", ...: also the word that scenes use.
 const char* commandName(CommandKind kind);
 
+/// What a game says to a claim of a recording.
+enum class ClaimCheck : std::uint8_t {
+  holds,
+  isFalse,
+  unknown,  ///< It knows no such key.
+};
+
 /// What a Space needs beside its state, before a recorded world is put in: the functions behind the numbers
 /// its handlers and bodies name, and the function that understands the game's own input.
 template <Scalar S>
@@ -159,6 +167,10 @@ struct Wiring {
   /// ids that a game keeps beside its Space for this are Id::anywhere.
   void (*applyInput)(Space<S>& space, std::span<const std::uint8_t> bytes, void* data) = nullptr;
   void* data = nullptr;
+  /// Whether what a recording claims is true of the world as it is now; null where the game knows no claims.
+  /// The value is what Recorder::claim was given, or what a stranger put there.
+  ClaimCheck (*checkClaim)(const Space<S>& space, std::string_view key, std::span<const std::uint8_t> value,
+                           void* data) = nullptr;
 };
 
 /// Does what the command says. Not called apply: a command is a variant, and std::apply would be found for

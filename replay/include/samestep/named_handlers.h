@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include <samestep/command.h>
@@ -32,7 +33,13 @@ CallbackNumber handlerNumber(std::string_view name);
 template <Scalar S>
 void registerNamedHandlers(Space<S>& space);
 
-/// The wiring of scenes: the named handlers.
+/// What a claim with one of these keys must say of a world, as text: "samestep.bodies", how many there are;
+/// "samestep.user-data.N", the user data of the body with index N, such as the handler "count" keeps a score
+/// in; "samestep.hash", 16 hexadecimal digits. Empty for any other key, and for a body that is not there.
+template <Scalar S>
+std::string namedClaim(const Space<S>& space, std::string_view key);
+
+/// The wiring of scenes: the named handlers, and the named claims.
 template <Scalar S>
 Wiring<S> namedHandlerWiring();
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <samestep/recording.h>
@@ -13,6 +14,15 @@ namespace samestep {
 inline constexpr std::uint32_t kDefaultRewindTicks = 240;
 inline constexpr std::uint32_t kMostRewindTicks = 1u << 15;
 
+/// When the world is put into a recording, so that a player can begin there and any stretch can be checked by
+/// itself: after so many ticks, but no sooner than its size allows.
+struct KeyframeBudget {
+  /// Ten seconds at 60 Hz; 0 for no keyframes.
+  std::uint32_t ticks = 600;
+  /// So many bytes a tick may keyframes take, those of the first world aside.
+  std::uint32_t bytesPerTick = 20;
+};
+
 /// Takes the bytes of a recording, piece by piece, in order.
 using ByteSink = void (*)(std::span<const std::uint8_t> bytes, void* data);
 
@@ -20,7 +30,8 @@ using ByteSink = void (*)(std::span<const std::uint8_t> bytes, void* data);
 ///
 /// All that changes the world between steps must go through apply(), so that it is recorded; functions
 /// registered with the Space, and what they do during a step, are not recorded but must be registered again
-/// for the replay. A recording that was not finished is refused as cut short.
+/// for the replay. A recording that was not finished is taken by readers that
+/// ask for it (Ending::mayBeCut), and refused by others.
 ///
 /// Rollback: where the Space has been restored to the world after a recorded step, or to the one the
 /// recording began with, the recording goes back there by itself and goes on from there, so what it tells is
@@ -40,7 +51,8 @@ class Recorder {
   /// @throws SpaceLocked; ForeignWorld where no reader would take the world, as for more than WorldLimits;
   ///         ValueOutOfRange for the time step
   Recorder(Space<S>& space, S timeStep, std::vector<std::uint8_t>& bytes, const Wiring<S>& wiring = {});
-  /// Gives pieces of up to some KB to `sink`, so that a long match takes no memory.
+  /// Gives sections of some KB, and keyframes, to `sink`, so that a long match takes no memory. What it has
+  /// at any time is a recording that can be played up to its last whole tick (Ending::mayBeCut).
   Recorder(Space<S>& space, S timeStep, ByteSink sink, void* data, const Wiring<S>& wiring = {});
   ~Recorder();
   Recorder(const Recorder&) = delete;
@@ -71,6 +83,23 @@ class Recorder {
   /// given to the sink. Fewer than before forgets; more holds from now on.
   /// @throws ValueOutOfRange for more than kMostRewindTicks
   void setRewindTicks(std::uint32_t ticks);
+  /// From now on; see KeyframeBudget for what holds at first.
+  void setKeyframes(const KeyframeBudget& budget);
+  /// Whether what is given to the sink from now on is packed by zstd. Off at first: hashes cannot be packed,
+  /// so it is worth while where commands or keyframes are large.
+  /// @throws ValueOutOfRange where this build lacks zstd (packingAvailable)
+  void setPacking(bool packing);
+  /// Puts down what the game says of the world as it is after the last step: a score, a winner, a lap time.
+  /// Whoever verifies the recording asks Wiring::checkClaim. Under rollback it is taken back with its step.
+  /// @param key    1 to 255 bytes
+  /// @param value  at most 4096 bytes
+  /// @throws ValueOutOfRange; ForeignWorld as apply
+  void claim(std::string_view key, std::span<const std::uint8_t> value);
+  void claim(std::string_view key, std::string_view value);
+  /// Puts down something beside the match: names of players, of the level. It is never taken back.
+  /// @param value  at most 2^16 bytes
+  /// @throws ValueOutOfRange
+  void note(std::string_view key, std::string_view value);
   /// Whether apply() and step() look, for the price of one more hash each, if anything changed the world that
   /// was not recorded. Off at first.
   void setChecking(bool checking);

@@ -18,7 +18,8 @@ class Replay {
   /// @throws FormatError; MissingCallback for a world that needs functions the wiring does not register;
   ///         Interrupted
   explicit Replay(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring = {},
-                  const RecordingLimits& limits = {}, const Interrupt& interrupt = {});
+                  const RecordingLimits& limits = {}, const Interrupt& interrupt = {},
+                  Ending ending = Ending::whole);
 
   /// Steps in the recording, and steps made so far.
   std::uint64_t ticks() const { return reader_.ticks(); }
@@ -36,6 +37,14 @@ class Replay {
   /// @throws as applyCommands
   bool step();
 
+  /// Reads the next claim about the world as it is now; null where there is none left. Those that are not
+  /// asked for are passed over by the next step.
+  const Claim* nextClaim();
+  /// Goes to the world after a step, forth or back, by way of the last keyframe before it.
+  /// @throws ValueOutOfRange beyond the end; FormatError as applyCommands, and for a keyframe that is none
+  void seek(std::uint64_t tick);
+  const RecordingReader<S>& reader() const { return reader_; }
+
   /// Asked about each command before it is applied; false ends the replay there. Null for none.
   void setCommandFilter(bool (*filter)(const Command<S>& command, std::uint64_t offset, void* data),
                         void* data) {
@@ -44,18 +53,19 @@ class Replay {
   }
 
   /// What was done last before a step, as it stands in the recording. Commands are not kept: a few bytes each
-  /// may tell of any number.
+  /// may tell of any number. They last until the claims or commands after that step are looked at.
   std::span<const std::uint8_t> commandBytes() const {
-    return bytes_.subspan(static_cast<std::size_t>(commandsBegin_),
-                          static_cast<std::size_t>(commandsEnd_ - commandsBegin_));
+    return reader_.items().subspan(static_cast<std::size_t>(commandsBegin_),
+                                   static_cast<std::size_t>(commandsEnd_ - commandsBegin_));
   }
   /// Calls visit(command, its bytes) for each of them.
   template <class Visit>
   void eachCommand(Visit&& visit) const {
     for (std::uint64_t offset = commandsBegin_; offset < commandsEnd_;) {
       const std::uint64_t from = offset;
-      const Command<S> command = RecordingReader<S>::commandAt(bytes_, offset);
-      visit(command, bytes_.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(offset - from)));
+      const auto items = reader_.items();
+      const Command<S> command = RecordingReader<S>::commandAt(items, offset);
+      visit(command, items.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(offset - from)));
     }
   }
 
@@ -63,7 +73,6 @@ class Replay {
   template <class Action>
   void act(Action&& action);
 
-  std::span<const std::uint8_t> bytes_;
   Interrupt interrupt_;
   RecordingReader<S> reader_;
   Wiring<S> wiring_;

@@ -4,10 +4,19 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include <samestep/replay.h>
 
 namespace samestep {
+
+/// A claim of a recording, with the step after which it should hold.
+struct ClaimAt {
+  std::uint64_t tick = 0;
+  std::string key;
+  std::vector<std::uint8_t> value;
+};
 
 /// What replaying a recording showed.
 struct VerifyResult {
@@ -25,6 +34,16 @@ struct VerifyResult {
   const char* unexpected = nullptr;
   /// Of the command that is not allowed.
   std::uint64_t unexpectedOffset = 0;
+  /// Whether it is a keyframe that is not the world after firstWrongTick, though its hash is that.
+  bool keyframeDiffers = false;
+  /// Claims that the game found to hold, found false, and does not know. With a false one, matches is false.
+  std::uint64_t claimsThatHold = 0;
+  std::uint64_t claimsThatAreFalse = 0;
+  std::uint64_t claimsUnknown = 0;
+  /// The first one of those.
+  std::optional<ClaimAt> falseClaim;
+  /// Whether the recording was cut, and only as many steps as `ticks` were there; see VerifyOptions::ending.
+  bool cut = false;
 };
 
 /// What the match was to be, told by whoever gave it out, not by the recording: by itself a recording shows
@@ -51,6 +70,8 @@ struct VerifyOptions {
   /// of a step.
   RecordingLimits limits{};
   Expectations expected{};
+  /// Whether a recording that ends too early is refused, or replayed as far as it goes.
+  Ending ending = Ending::whole;
   /// A recording whose world had made more steps before is refused.
   std::uint64_t mostFirstTick = kMostFirstTick;
   /// Called after every step; false stops, as for a recording that takes too long. Null for none.
@@ -65,7 +86,8 @@ struct VerifyOptions {
   KernelTarget kernel = KernelTarget::best;
 };
 
-/// Replays a recording and compares the hash of every step. A mismatch is a result, not an error.
+/// Replays a recording, compares the hash of every step and each keyframe, and asks the wiring about claims.
+/// Keyframes are never taken for what they say. A mismatch is a result, not an error.
 /// @throws FormatError, MissingCallback, KernelUnavailable
 template <Scalar S>
 VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
