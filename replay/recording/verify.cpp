@@ -64,6 +64,26 @@ class KeyframeWatch {
   std::size_t next_ = 0;
 };
 
+/// Whether the world is as recorded; notes the first one that is not, and how it goes on.
+template <Scalar S>
+bool compare(const Replay<S>& replay, KeyframeWatch<S>& keyframes, VerifyResult& result) {
+  const std::uint64_t recorded = replay.recordedHash();
+  const std::uint64_t computed = replay.space().hash();
+  const bool keyframeAgrees = keyframes.agrees(replay);
+  const bool same = recorded == computed && keyframeAgrees;
+  if (result.wrongTicks == 0) {
+    result.recordedHash = recorded;
+    result.computedHash = computed;
+  }
+  if (same) return true;
+  if (result.wrongTicks++ == 0) {
+    result.firstWrongTick = replay.tick();
+    result.keyframeDiffers = recorded == computed;
+  }
+  result.lastWrongTick = replay.tick();
+  return false;
+}
+
 template <Scalar S>
 void checkClaims(Replay<S>& replay, const Wiring<S>& wiring, VerifyResult& result) {
   while (const Claim* claim = replay.nextClaim()) {
@@ -97,20 +117,14 @@ void verifyInto(VerifyResult& result, std::span<const std::uint8_t> bytes, const
   replay.setCommandFilter(CommandWatch<S>::filter, &watch);
   KeyframeWatch<S> keyframes;
   do {
-    result.recordedHash = replay.recordedHash();
-    result.computedHash = replay.space().hash();
-    result.keyframeDiffers = result.recordedHash == result.computedHash && !keyframes.agrees(replay);
-    if (result.recordedHash != result.computedHash || result.keyframeDiffers) {
-      result.firstWrongTick = replay.tick();
-      return;
-    }
+    if (!compare(replay, keyframes, result) && !options.toTheEnd) return;
     checkClaims(replay, wiring, result);
     if (options.progress != nullptr && !options.progress(replay.tick(), replay.ticks(), options.data)) {
       result.stopped = true;
       return;
     }
   } while (replay.step());
-  result.matches = result.unexpected == nullptr && result.claimsThatAreFalse == 0;
+  result.matches = result.unexpected == nullptr && result.claimsThatAreFalse == 0 && result.wrongTicks == 0;
 }
 
 }  // namespace

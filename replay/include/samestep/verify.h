@@ -7,16 +7,10 @@
 #include <string>
 #include <vector>
 
+#include <samestep/player.h>
 #include <samestep/replay.h>
 
 namespace samestep {
-
-/// A claim of a recording, with the step after which it should hold.
-struct ClaimAt {
-  std::uint64_t tick = 0;
-  std::string key;
-  std::vector<std::uint8_t> value;
-};
 
 /// What replaying a recording showed.
 struct VerifyResult {
@@ -42,6 +36,10 @@ struct VerifyResult {
   std::uint64_t claimsUnknown = 0;
   /// The first one of those.
   std::optional<ClaimAt> falseClaim;
+  /// With VerifyOptions::toTheEnd, the steps whose hash is not the recorded one, and the last of them: where it
+  /// is not the last of all, the worlds agreed again.
+  std::uint64_t wrongTicks = 0;
+  std::uint64_t lastWrongTick = 0;
   /// Whether the recording was cut, and only as many steps as `ticks` were there; see VerifyOptions::ending.
   bool cut = false;
 };
@@ -70,6 +68,8 @@ struct VerifyOptions {
   /// of a step.
   RecordingLimits limits{};
   Expectations expected{};
+  /// Whether to go on after a mismatch, to see whether it heals.
+  bool toTheEnd = false;
   /// Whether a recording that ends too early is refused, or replayed as far as it goes.
   Ending ending = Ending::whole;
   /// A recording whose world had made more steps before is refused.
