@@ -225,4 +225,11 @@ std::string hex(std::uint64_t value) {
   return text;
 }
 
+std::string printable(std::string text) {
+  for (char& c : text) {
+    if (c < ' ' || c > '~') c = '.';
+  }
+  return text;
+}
+
 }  // namespace samestep::program

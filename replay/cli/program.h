@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <samestep/judge.h>
 #include <samestep/kernel.h>
 #include <samestep/recording.h>
 #include <samestep/scalar.h>
@@ -37,9 +38,10 @@ class Unusable : public std::exception {
 void addScenes(CLI::App& app, int& result);
 void addHash(CLI::App& app, int& result);
 void addRecord(CLI::App& app, int& result);
-void addVerify(CLI::App& app, int& result);
-void addDiff(CLI::App& app, int& result);
-void addDraw(CLI::App& app, int& result);
+void addVerify(CLI::App& app, const Wirings& wirings, int& result);
+void addInfo(CLI::App& app, int& result);
+void addDiff(CLI::App& app, const Wirings& wirings, int& result);
+void addDraw(CLI::App& app, const Wirings& wirings, int& result);
 void addChart(CLI::App& app, int& result);
 void addEnvelope(CLI::App& app, int& result);
 void addNetsim(CLI::App& app, int& result);
@@ -83,7 +85,9 @@ int withScalar(const std::string& name, Visit&& visit) {
 /// The same for the scalar of a recording.
 template <class Visit>
 int withScalarOf(ScalarKind kind, Visit&& visit) {
-  return withScalar(kind == ScalarKind::fixed ? "fixed" : "double", std::forward<Visit>(visit));
+  if (kind == ScalarKind::fixed) return visit(Fixed());
+  if constexpr (ScalarTraits<double>::kSupported) return visit(double());
+  throw Unusable("this build has no scalar \"double\"");
 }
 
 /// Shows on a terminal how far long work is: "record: 1200 of 6000 ticks".
@@ -143,5 +147,7 @@ void tell(const std::string& file, const std::exception& error);
 
 /// 16 hexadecimal digits.
 std::string hex(std::uint64_t value);
+/// A stranger's bytes on a line: what a terminal would take for orders is shown as dots.
+std::string printable(std::string text);
 
 }  // namespace samestep::program

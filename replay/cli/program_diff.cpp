@@ -4,7 +4,6 @@
 #include <samestep/replay_diff.h>
 
 #include "cli/program.h"
-#include "cli/program_wiring.h"
 
 namespace samestep::program {
 namespace {
@@ -67,7 +66,8 @@ void reportWorlds(const ReplayDifference& difference) {
 }
 
 template <Scalar S>
-int run(const Options& options, std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
+int run(const Options& options, const Wirings& wirings, std::span<const std::uint8_t> a,
+        std::span<const std::uint8_t> b) {
   std::uint64_t ticksA = 0;
   std::uint64_t ticksB = 0;
   if (!usable<S>(options.a, a, ticksA) || !usable<S>(options.b, b, ticksB)) return kUnusable;
@@ -78,7 +78,7 @@ int run(const Options& options, std::span<const std::uint8_t> a, std::span<const
     static_cast<Progress*>(data)->at(done, total);
     return true;
   };
-  const ReplayDifference difference = findDifference<S>(a, b, programWiring<S>(), options.most, how);
+  const ReplayDifference difference = findDifference<S>(a, b, wiringOf<S>(wirings), options.most, how);
   progress.clear();
   if (difference.worldsDiffer) {
     reportWorlds(difference);
@@ -92,7 +92,7 @@ int run(const Options& options, std::span<const std::uint8_t> a, std::span<const
   return kMismatch;
 }
 
-int diff(const Options& options) {
+int diff(const Options& options, const Wirings& wirings) {
   std::vector<std::uint8_t> a;
   std::vector<std::uint8_t> b;
   if (!read(options.a, a) || !read(options.b, b)) return kUnusable;
@@ -101,12 +101,12 @@ int diff(const Options& options) {
     std::printf("one is recorded with fixed, the other with double\n");
     return kMismatch;
   }
-  return withScalarOf(scalar, [&](auto number) { return run<decltype(number)>(options, a, b); });
+  return withScalarOf(scalar, [&](auto number) { return run<decltype(number)>(options, wirings, a, b); });
 }
 
 }  // namespace
 
-void addDiff(CLI::App& app, int& result) {
+void addDiff(CLI::App& app, const Wirings& wirings, int& result) {
   CLI::App* word = app.add_subcommand(
       "diff", "Replay two recordings and find the first tick, object and field in which their worlds differ");
   auto options = std::make_shared<Options>();
@@ -115,7 +115,7 @@ void addDiff(CLI::App& app, int& result) {
   word->add_option("--fields", options->most, "How many differing fields to show")
       ->check(CLI::Range(1u, 1000000u))
       ->capture_default_str();
-  word->callback([options, &result] { result = diff(*options); });
+  word->callback([options, &wirings, &result] { result = diff(*options, wirings); });
 }
 
 }  // namespace samestep::program

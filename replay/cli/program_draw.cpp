@@ -3,11 +3,10 @@
 #include <filesystem>
 
 #include <samestep/draw.h>
-#include <samestep/replay.h>
+#include <samestep/player.h>
 #include <samestep/scene.h>
 
 #include "cli/program.h"
-#include "cli/program_wiring.h"
 
 namespace samestep::program {
 namespace {
@@ -50,21 +49,24 @@ int drawScene(const Options& options) {
 }
 
 template <Scalar S>
-int drawRecording(const Options& options, std::span<const std::uint8_t> bytes) {
-  Replay<S> replay(bytes, programWiring<S>());
-  if (options.tick > replay.ticks()) {
-    throw Unusable(options.source + ": ends at tick " + std::to_string(replay.ticks()));
-  }
+int drawRecording(const Options& options, const Wirings& wirings, std::span<const std::uint8_t> bytes) {
   Progress progress("draw", options.tick);
-  while (replay.tick() < options.tick) {
-    replay.step();
-    progress.at(replay.tick());
+  PlayerOptions how;
+  how.data = &progress;
+  how.progress = [](std::uint64_t tick, std::uint64_t target, void* data) {
+    static_cast<Progress*>(data)->at(tick, target);
+    return true;
+  };
+  Player<S> player(bytes, wiringOf<S>(wirings), how);
+  if (options.tick > player.ticks()) {
+    throw Unusable(options.source + ": ends at tick " + std::to_string(player.ticks()));
   }
-  write(options, replay.space());
+  player.seek(options.tick);
+  write(options, player.space());
   return kGood;
 }
 
-int draw(const Options& options) {
+int draw(const Options& options, const Wirings& wirings) {
   checkPicture(options.file);
   std::error_code error;
   const bool file = std::filesystem::is_regular_file(options.source, error);
@@ -76,8 +78,9 @@ int draw(const Options& options) {
   }
   try {
     const std::vector<std::uint8_t> bytes = readRecording(options.source);
-    return withScalarOf(recordingInfo(bytes).scalar,
-                        [&](auto scalar) { return drawRecording<decltype(scalar)>(options, bytes); });
+    return withScalarOf(recordingInfo(bytes).scalar, [&](auto scalar) {
+      return drawRecording<decltype(scalar)>(options, wirings, bytes);
+    });
   } catch (const FormatError& problem) {
     tell(options.source, problem);
     return kUnusable;
@@ -86,7 +89,7 @@ int draw(const Options& options) {
 
 }  // namespace
 
-void addDraw(CLI::App& app, int& result) {
+void addDraw(CLI::App& app, const Wirings& wirings, int& result) {
   CLI::App* word = app.add_subcommand("draw", "Draw one tick of a scene or recording as an SVG picture");
   auto options = std::make_shared<Options>();
   word->add_option("SCENE|FILE", options->source, "A scene (name or path) or a recording")->required();
@@ -95,9 +98,9 @@ void addDraw(CLI::App& app, int& result) {
       ->required();
   word->add_option("-o,--output", options->file, "The SVG file to write")->required();
   addScalarOption(*word, options->scalar);
-  word->callback([options, word, &result] {
+  word->callback([options, word, &wirings, &result] {
     options->scalarGiven = word->count("--scalar") > 0;
-    result = draw(*options);
+    result = draw(*options, wirings);
   });
 }
 

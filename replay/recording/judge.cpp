@@ -117,8 +117,7 @@ VerifyOptions asFarAsItGoes(VerifyOptions options) {
 
 template <Scalar S>
 Judgement judge(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const VerifyOptions& options) {
-  return judged(bytes, options,
-                [&](ScalarKind) { return verify<S>(bytes, wiring, asFarAsItGoes(options)); });
+  return judged(bytes, options, [&](ScalarKind) { return verify<S>(bytes, wiring, asFarAsItGoes(options)); });
 }
 
 Judgement judge(std::span<const std::uint8_t> bytes, const Wirings& wirings, const VerifyOptions& options) {

@@ -9,7 +9,7 @@ namespace samestep {
 
 template <Scalar S>
 Player<S>::Player(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring, const PlayerOptions& options)
-    : bytes_(bytes), options_(options), replay_(bytes, wiring, options.limits, options.interrupt, options.ending) {
+    : options_(options), replay_(bytes, wiring, options.limits, options.interrupt, options.ending) {
   compare();
 }
 
@@ -61,9 +61,9 @@ Trust Player<S>::trust() const {
 }
 
 template <Scalar S>
-std::vector<ClaimAt> Player<S>::claims(std::size_t most) const {
+std::vector<ClaimAt> claimsOf(RecordingReader<S> reader, std::size_t most) {
   std::vector<ClaimAt> all;
-  RecordingReader<S> reader(bytes_, options_.limits, options_.ending);
+  reader.seek(0);
   std::uint64_t tick = 0;
   for (RecordingItem item = reader.next(); item != RecordingItem::end && all.size() < most;
        item = reader.next()) {
@@ -75,7 +75,9 @@ std::vector<ClaimAt> Player<S>::claims(std::size_t most) const {
   return all;
 }
 
-#define SAMESTEP_EACH_SCALAR template class Player<S>;
+#define SAMESTEP_EACH_SCALAR \
+  template class Player<S>;  \
+  template std::vector<ClaimAt> claimsOf<S>(RecordingReader<S>, std::size_t);
 #include <samestep/each_scalar.h>
 
 }  // namespace samestep

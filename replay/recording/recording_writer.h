@@ -24,8 +24,8 @@ class RecordingWriter {
   void begin(std::span<const std::uint8_t> header, std::uint64_t hash, std::span<const std::uint8_t> world);
   /// Where the items of the next tick are appended.
   std::vector<std::uint8_t>& items() { return items_; }
-  /// Before a step is made: gives what can no longer be taken back then, and makes room, so that endTick takes
-  /// no memory. Where the sink throws, the same is given once more.
+  /// Before a step is made: gives what can no longer be taken back then, and makes room, so that endTick
+  /// takes no memory. Where the sink throws, the same is given once more.
   void prepareTick();
   /// The items so far are those of one more tick, after which the world has this hash.
   /// @pre prepareTick() since the last one

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -134,6 +135,75 @@ TEST_F(ProgramTest, RecordsVerifiesAndFindsWhatWasAltered) {
   const Outcome several = run("verify '" + file("cut.rec") + "' '" + file("a.rec") + "'");
   EXPECT_EQ(several.code, 2);
   EXPECT_THAT(several.out, HasSubstr("all 150 ticks"));
+}
+
+TEST_F(ProgramTest, VerifyTakesFoldersAndSharesThemOut) {
+  std::filesystem::create_directory(file("folder"));
+  for (const char* name : {"a", "b", "c", "d"}) {
+    const std::string ticks = std::to_string(20 + 10 * (name[0] - 'a'));
+    ASSERT_EQ(run("record stack --ticks " + ticks + " -o '" + file("folder/") + name + "'").code, 0);
+  }
+  write("folder/notes.txt", "no recording");
+  const std::string bytes = contents(file("folder/a"));
+  write("folder/cut", bytes.substr(0, bytes.size() - 40));
+
+  const Outcome alone = run("verify '" + file("folder") + "'");
+  EXPECT_EQ(alone.code, 1);
+  EXPECT_THAT(alone.out, HasSubstr("cut: INCOMPLETE: ends after tick 20 without an end"));
+  EXPECT_THAT(alone.out, HasSubstr("5 files: 4 verified, 1 incomplete; 160 ticks in "));
+  const auto verdictsOf = [&](const std::string& options) {
+    std::string lines = run("verify --json " + options + " '" + file("folder") + "'").out;
+    for (std::size_t at; (at = lines.find(",\"milliseconds\":")) != std::string::npos;) {
+      lines.erase(at, lines.find('}', at) - at);
+    }
+    return lines;
+  };
+  const std::string all = verdictsOf("");
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 5);
+  EXPECT_THAT(all, HasSubstr("\"verdict\":\"incomplete\""));
+  EXPECT_EQ(verdictsOf("--jobs 3"), all);
+  EXPECT_EQ(verdictsOf("--max-memory 4000"), all);
+  // The greatest first: the shards share out the work and have no file in common.
+  std::string shards;
+  for (const char* shard : {"1/3", "2/3", "3/3"}) {
+    const std::string own = verdictsOf(std::string("--shard ") + shard);
+    EXPECT_GE(std::count(own.begin(), own.end(), '\n'), 1);
+    shards += own;
+  }
+  EXPECT_EQ(shards.size(), all.size());
+  EXPECT_EQ(run("verify --shard 0/3 '" + file("folder") + "'").code, 2);
+  EXPECT_EQ(run("verify --shard 4/3 '" + file("folder") + "'").code, 2);
+  std::filesystem::create_directory(file("none"));
+  EXPECT_THAT(run("verify '" + file("none") + "'").error, HasSubstr("no recordings in this folder"));
+}
+
+TEST_F(ProgramTest, ClaimsAreRecordedToldAndChecked) {
+  ASSERT_EQ(
+      run("record stack --ticks 9 --note level=one --claim samestep.bodies -o '" + file("a.rec") + "'").code,
+      0);
+  EXPECT_THAT(run("verify '" + file("a.rec") + "'").out, HasSubstr(", 1 claims hold"));
+  const Outcome info = run("info --keyframes '" + file("a.rec") + "'");
+  EXPECT_EQ(info.code, 0);
+  for (const char* told : {"format version 3", "9 ticks of 0.01", "keyframes: 1,", "note level: one",
+                           "claim after tick 9: samestep.bodies is "}) {
+    EXPECT_THAT(info.out, HasSubstr(told));
+  }
+  ASSERT_EQ(run("record stack --ticks 9 --claim samestep.bodies=99 -o '" + file("b.rec") + "'").code, 0);
+  const Outcome liar = run("verify '" + file("b.rec") + "'");
+  EXPECT_EQ(liar.code, 1);
+  EXPECT_THAT(liar.out, HasSubstr("FALSE CLAIM: after tick 9, samestep.bodies is not 99"));
+  EXPECT_EQ(run("record stack --claim score -o '" + file("c.rec") + "'").code, 2);
+}
+
+TEST_F(ProgramTest, AGameHasTheWholeCommandLineWithItsOwnClaims) {
+  ASSERT_EQ(run("record stack --ticks 9 --claim height=! -o '" + file("a.rec") + "'").code, 0);
+  EXPECT_THAT(run("verify '" + file("a.rec") + "'").out, HasSubstr("1 claims are unknown here"));
+  const std::string verify =
+      std::string("'") + SAMESTEP_GAME + "' verify '" + file("a.rec") + "' > '" + file("out") + "'";
+  const int status = std::system(verify.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  // An exclamation mark is 33 metres.
+  EXPECT_THAT(contents(file("out")), HasSubstr("FALSE CLAIM: after tick 9, height is not !"));
 }
 
 TEST_F(ProgramTest, VerifyHasLimitsForRecordingsFromStrangers) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 
 #include <samestep/named_handlers.h>
 #include <samestep/verify.h>
@@ -21,7 +22,8 @@ enum class Verdict : std::uint8_t {
   unusable,       ///< It cannot be read, or the world refuses what is done in it, or it outgrows the limits.
   stopped,        ///< VerifyOptions::progress said so.
 };
-/// "verified", "mismatch", "false claim", "unexpected", "incomplete", "other revision", "unusable", "stopped".
+/// "verified", "mismatch", "false claim", "unexpected", "incomplete", "other revision", "unusable",
+/// "stopped".
 const char* verdictName(Verdict verdict);
 
 /// A verdict with its grounds.
@@ -48,6 +50,15 @@ struct Wirings {
   Wiring<double> float64 = namedHandlerWiring<double>();
 #endif
 };
+
+template <Scalar S>
+const Wiring<S>& wiringOf(const Wirings& wirings) {
+  if constexpr (std::is_same_v<S, Fixed>) {
+    return wirings.fixed;
+  } else {
+    return wirings.float64;
+  }
+}
 
 /// Replays a recording that may be anything and says what is to be said of it. Bytes are never an error.
 /// options.ending is passed over: a recording that was cut is replayed as far as it goes.

@@ -37,8 +37,9 @@ struct PlayerOptions {
   Interrupt interrupt{};
 };
 
-/// Plays a recording for somebody to look at: forth and back, with the world as it is between steps. Any number
-/// of players may share the bytes of a recording, each with a world of its own and in a thread of its own.
+/// Plays a recording for somebody to look at: forth and back, with the world as it is between steps. Any
+/// number of players may share the bytes of a recording, each with a world of its own and in a thread of its
+/// own.
 ///
 ///     Player<Fixed> player(bytes, wiring);
 ///     player.seek(36000);
@@ -61,8 +62,9 @@ class Player {
   /// Makes the next step. False at the end.
   /// @throws FormatError for what the world refuses, and where it outgrows the limits
   bool step();
-  /// Goes to the world after a step, by way of the last keyframe before it where that is nearer than the world
-  /// as it is. A keyframe beyond what is proven makes the world claimed; playing from the start proves it.
+  /// Goes to the world after a step, by way of the last keyframe before it where that is nearer than the
+  /// world as it is. A keyframe beyond what is proven makes the world claimed; playing from the start proves
+  /// it.
   /// @return whether it got there; options.progress may have stopped it between
   /// @throws ValueOutOfRange beyond the end; FormatError as step, and for a keyframe that is none
   bool seek(std::uint64_t tick);
@@ -72,20 +74,20 @@ class Player {
   std::uint64_t provenTicks() const { return proven_; }
   /// The first step found whose world is not the one recorded.
   std::optional<std::uint64_t> wrongTick() const { return wrong_; }
-  /// The claims of the whole recording in their order, at most `most`; none of them is checked.
-  /// @throws FormatError
-  std::vector<ClaimAt> claims(std::size_t most = 1000) const;
 
  private:
   void compare();
 
-  std::span<const std::uint8_t> bytes_;
   PlayerOptions options_;
   Replay<S> replay_;
   std::uint64_t proven_ = 0;
   bool chained_ = true;  ///< Whether the world came from the proven ones.
   std::optional<std::uint64_t> wrong_;
 };
+
+/// The claims of a recording in their order, at most `most`; none of them is checked.
+template <Scalar S>
+std::vector<ClaimAt> claimsOf(RecordingReader<S> reader, std::size_t most = 1000);
 
 #define SAMESTEP_EACH_SCALAR extern template class Player<S>;
 #include <samestep/each_scalar.h>

@@ -36,8 +36,8 @@ struct VerifyResult {
   std::uint64_t claimsUnknown = 0;
   /// The first one of those.
   std::optional<ClaimAt> falseClaim;
-  /// With VerifyOptions::toTheEnd, the steps whose hash is not the recorded one, and the last of them: where it
-  /// is not the last of all, the worlds agreed again.
+  /// With VerifyOptions::toTheEnd, the steps whose hash is not the recorded one, and the last of them: where
+  /// it is not the last of all, the worlds agreed again.
   std::uint64_t wrongTicks = 0;
   std::uint64_t lastWrongTick = 0;
   /// Whether the recording was cut, and only as many steps as `ticks` were there; see VerifyOptions::ending.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The program: scenes, their hashes, recordings and pictures.
 #include <algorithm>
 #include <cstdio>
 
 #include <samestep/error.h>
 #include <samestep/fingerprint.h>
+#include <samestep/program.h>
 #include <samestep/space.h>
 #include <samestep/version.h>
 
@@ -32,7 +32,7 @@ std::string versionText() {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int samestep::runProgram(int argc, char** argv, const Wirings& wirings) {
   using namespace samestep::program;
   CLI::App app(
       "Samestep: 2D physics that gives the same bits on every machine.\n"
@@ -46,9 +46,10 @@ int main(int argc, char** argv) {
   addScenes(app, result);
   addHash(app, result);
   addRecord(app, result);
-  addVerify(app, result);
-  addDiff(app, result);
-  addDraw(app, result);
+  addVerify(app, wirings, result);
+  addInfo(app, result);
+  addDiff(app, wirings, result);
+  addDraw(app, wirings, result);
   addChart(app, result);
   addEnvelope(app, result);
   addNetsim(app, result);

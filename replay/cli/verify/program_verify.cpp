@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+#include <samestep/verify.h>
+#include <samestep/workers.h>
+
+#include <unistd.h>
+
+#include "cli/program.h"
+#include "cli/verify/verify_batch.h"
+
+namespace samestep::program {
+namespace {
+
+/// What a server knows of the match, as it stands in the arguments.
+struct ExpectedWords {
+  std::string firstHash;
+  std::string timeStep;
+  std::string scalar;
+  std::vector<std::string> commands;
+  std::uint64_t ticks = 0;
+  std::uint64_t firstTick = 0;
+};
+
+bool readHash(const std::string& text, std::uint64_t& hash) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+  return text.size() == 16 && error == std::errc() && end == text.data() + text.size();
+}
+
+/// "1/60".
+bool readTimeStep(const std::string& text, std::uint32_t& rate) {
+  if (!text.starts_with("1/")) return false;
+  const auto [end, error] = std::from_chars(text.data() + 2, text.data() + text.size(), rate);
+  return error == std::errc() && end == text.data() + text.size() && rate > 0 && rate <= 1000000;
+}
+
+std::vector<std::string> commandWords() {
+  std::vector<std::string> words{"none"};
+  for (std::uint8_t kind = 0; kind < kCommandKinds; ++kind) {
+    words.emplace_back(commandName(static_cast<CommandKind>(kind)));
+  }
+  return words;
+}
+
+Expectations expectationsOf(const CLI::App& word, const ExpectedWords& words) {
+  Expectations expected;
+  std::uint64_t hash = 0;
+  std::uint32_t rate = 0;
+  if (readHash(words.firstHash, hash)) expected.firstHash = hash;
+  if (readTimeStep(words.timeStep, rate)) expected.stepsPerSecond = rate;
+  if (!words.scalar.empty()) {
+    expected.scalar = words.scalar == "fixed" ? ScalarKind::fixed : ScalarKind::float64;
+  }
+  if (word.count("--ticks") > 0) expected.ticks = words.ticks;
+  if (word.count("--first-tick") > 0) expected.firstTick = words.firstTick;
+  if (words.commands.empty()) return expected;
+  expected.commands = 0;
+  for (std::uint8_t kind = 0; kind < kCommandKinds; ++kind) {
+    const std::string name = commandName(static_cast<CommandKind>(kind));
+    const bool allowed =
+        std::find(words.commands.begin(), words.commands.end(), name) != words.commands.end();
+    if (allowed) expected.commands |= 1u << kind;
+  }
+  return expected;
+}
+
+/// Adds the options of expectations.
+void addExpectations(CLI::App& word, ExpectedWords& words) {
+  const auto hashes = [](const std::string& text) {
+    std::uint64_t hash = 0;
+    return readHash(text, hash) ? std::string() : "16 hexadecimal digits are wanted, not " + text;
+  };
+  const auto steps = [](const std::string& text) {
+    std::uint32_t rate = 0;
+    return readTimeStep(text, rate) ? std::string() : "1/60 or the like is wanted, not " + text;
+  };
+  word.add_option("--expect-first-hash", words.firstHash, "The hash that the world must have at the start")
+      ->check(CLI::Validator(hashes, "HASH"));
+  word.add_option("--time-step", words.timeStep, "How long each step must be, in seconds, as 1/60")
+      ->check(CLI::Validator(steps, "1/N"));
+  word.add_option("--scalar", words.scalar, "The number type that it must be recorded with")
+      ->check(CLI::IsMember({"fixed", "double"}));
+  word.add_option("--ticks", words.ticks, "How many steps it must have")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40));
+  word.add_option("--first-tick", words.firstTick, "How many steps the world must have made at the start");
+  word.add_option("--allow-commands", words.commands, "The kinds of command there may be, or none")
+      ->delimiter(',')
+      ->check(CLI::IsMember(commandWords()));
+}
+
+}  // namespace
+
+namespace {
+
+/// Which files are verified, and by whom.
+struct Batch {
+  std::vector<std::string> arguments;
+  int jobs = 1;
+  std::string shard;
+  std::uint64_t megabytes = 0;
+};
+
+/// "3/8": shard and count.
+bool readShard(const std::string& text, std::uint64_t& shard, std::uint64_t& count) {
+  constexpr std::uint64_t kMostShards = 1000000;
+  const char* const end = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), end, shard);
+  if (error != std::errc() || slash == end || *slash != '/') return false;
+  const auto [last, wrong] = std::from_chars(slash + 1, end, count);
+  return wrong == std::errc() && last == end && shard >= 1 && shard <= count && count <= kMostShards;
+}
+
+/// Counts verdicts, and says what they were of several files.
+class Summary {
+ public:
+  explicit Summary(std::size_t files) : files_(files) {}
+
+  void add(const Said& said) {
+    ++counts_[static_cast<std::size_t>(said.verdict)];
+    ticks_ += said.ticks;
+    code_ = std::max(code_, exitCodeOf(said.verdict));
+    ++told_;
+  }
+  int code() const { return code_; }
+  std::string progress() const {
+    const std::int64_t took = std::max<std::int64_t>(milliseconds() - start_, 1);
+    const std::uint64_t left =
+        static_cast<std::uint64_t>(took) * (files_ - told_) / std::max<std::size_t>(told_, 1);
+    return "verify: " + std::to_string(told_) + " of " + std::to_string(files_) + " files, " +
+           std::to_string(told_ * 1000 / static_cast<std::uint64_t>(took)) + " a second, " +
+           std::to_string(left / 1000) + " s left";
+  }
+  std::string text() const {
+    const auto took = static_cast<std::uint64_t>(std::max<std::int64_t>(milliseconds() - start_, 1));
+    std::string line = std::to_string(told_) + " files:";
+    for (std::size_t i = 0; i < std::size(counts_); ++i) {
+      if (counts_[i] == 0) continue;
+      line += (line.back() == ':' ? " " : ", ") + std::to_string(counts_[i]) + " " +
+              verdictName(static_cast<Verdict>(i));
+    }
+    return line + "; " + std::to_string(ticks_) + " ticks in " + std::to_string(took) + " ms (" +
+           std::to_string(ticks_ * 1000 / took) + " ticks/s)\n";
+  }
+
+ private:
+  std::size_t files_;
+  std::int64_t start_ = milliseconds();
+  std::size_t told_ = 0;
+  std::uint64_t counts_[8] = {};
+  std::uint64_t ticks_ = 0;
+  int code_ = kGood;
+};
+
+int runBatch(const Batch& batch, const VerifyPlan& plan) {
+  std::vector<std::string> files = filesNamed(batch.arguments);
+  std::uint64_t shard = 1;
+  std::uint64_t count = 1;
+  if (readShard(batch.shard, shard, count)) files = shardOf(files, shard, count);
+  Summary summary(files.size());
+  StatusLine status;
+  const bool watched = files.size() > 1 && isatty(STDERR_FILENO) == 1;
+  verifyAll(files, plan, batch.jobs, batch.megabytes, [&](const Said& said) {
+    status.clear();
+    std::fputs(said.out.c_str(), stdout);
+    // A batch that is killed keeps the verdicts it has come to, each in a line that is whole.
+    std::fflush(stdout);
+    std::fputs(said.error.c_str(), stderr);
+    summary.add(said);
+    if (watched) status.show(summary.progress());
+  });
+  status.clear();
+  if (files.size() != 1 || !batch.shard.empty())
+    std::fputs(summary.text().c_str(), plan.json ? stderr : stdout);
+  return summary.code();
+}
+
+void addBatch(CLI::App& word, Batch& batch, VerifyPlan& plan) {
+  word.add_option(
+          "FILE|DIR|-", batch.arguments,
+          "Recordings, as 'samestep record' or a game wrote them, folders of them, or - for a list of "
+          "files on the standard input")
+      ->required();
+  word.add_option("--jobs", batch.jobs, "How many processes verify files, one each at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  const auto shards = [](const std::string& text) {
+    std::uint64_t shard = 0;
+    std::uint64_t count = 0;
+    return readShard(text, shard, count) ? std::string() : "1/8 or the like is wanted, not " + text;
+  };
+  word.add_option(
+          "--shard", batch.shard,
+          "I/N: only the I-th of N parts of the files, which are of about the same work and the same on "
+          "every machine that has the files")
+      ->check(CLI::Validator(shards, "I/N"));
+  word.add_option("--max-memory", batch.megabytes, "Megabytes of memory that a file may take, by a process")
+      ->check(CLI::Range(std::uint64_t{16}, std::uint64_t{1} << 24));
+  word.add_flag("--json", plan.json, "Say what is to be said in JSON, a line for each file");
+  word.add_flag("--to-the-end", plan.options.toTheEnd, "Go on after a mismatch, to see whether it heals");
+}
+
+void addLimits(CLI::App& word, RecordingLimits& limits, std::int64_t& seconds) {
+  word.add_option("--max-bodies", limits.bodies, "Refuse recordings of worlds with more bodies")
+      ->capture_default_str();
+  word.add_option("--max-shapes", limits.shapes, "Refuse those with more shapes")->capture_default_str();
+  word.add_option("--max-pairs", limits.pairs, "Refuse those with more shapes near each other")
+      ->check(CLI::Range(std::uint32_t{0}, kMostPairs))
+      ->capture_default_str();
+  word.add_option("--max-handlers", limits.handlers, "Refuse those with more collision handlers bound")
+      ->capture_default_str();
+  word.add_option("--max-iterations", limits.iterations,
+                  "Refuse those whose steps solve contacts more often, by sequential impulses")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  word.add_option("--max-substeps", limits.substeps, "Refuse those whose steps have more substeps")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  word.add_option("--max-commands", limits.commandsPerTick, "Refuse those with more commands before a step")
+      ->capture_default_str();
+  word.add_option("--max-bytes", limits.bytes, "Refuse files that are larger; no more of them is read")
+      ->capture_default_str();
+  word.add_option("--max-work", limits.work,
+                  "Refuse those that take more work, in units of about 10 ns: the same on every machine")
+      ->check(CLI::Range(std::uint64_t{1}, ~std::uint64_t{0}));
+  word.add_option("--max-seconds", seconds, "Give up after so many seconds for a recording")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30));
+}
+
+}  // namespace
+
+void addVerify(CLI::App& app, const Wirings& wirings, int& result) {
+  CLI::App* word = app.add_subcommand(
+      "verify", "Replay recordings and check that every tick comes out as it was recorded");
+  auto batch = std::make_shared<Batch>();
+  auto plan = std::make_shared<VerifyPlan>();
+  plan->wirings = &wirings;
+  addBatch(*word, *batch, *plan);
+  auto compute = std::make_shared<ComputeOptions>();
+  addComputeOptions(*word, *compute);
+  auto expected = std::make_shared<ExpectedWords>();
+  addExpectations(*word, *expected);
+  // For recordings from strangers.
+  addLimits(*word, plan->options.limits, plan->seconds);
+  word->callback([batch, plan, compute, expected, word, &result] {
+    plan->options.kernel = compute->target();
+    plan->options.expected = expectationsOf(*word, *expected);
+    WorkerPool pool(compute->workers);
+    plan->options.workers = &pool;
+    if ((batch->jobs > 1 || batch->megabytes > 0) && compute->workers > 1) {
+      throw Unusable("--workers share out a step, processes (--jobs, --max-memory) files: one at a time");
+    }
+    result = runBatch(*batch, *plan);
+  });
+}
+
+}  // namespace samestep::program

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <samestep/judge.h>
+
+namespace samestep::program {
+
+/// How `samestep verify` goes about each file.
+struct VerifyPlan {
+  VerifyOptions options;
+  const Wirings* wirings = nullptr;
+  std::int64_t seconds = 0;  ///< At most for a file; 0 for as long as it takes.
+  bool json = false;
+  bool quiet = false;  ///< No progress on the terminal.
+};
+
+/// What is said of a file.
+struct Said {
+  Verdict verdict = Verdict::unusable;
+  std::uint64_t ticks = 0;  ///< Replayed.
+  std::string out;
+  std::string error;
+};
+
+/// Verifies one file. Whatever it is, there is something to be said of it.
+Said verifyFile(const std::string& file, const VerifyPlan& plan);
+/// What is said of a file that could not be come to an end with.
+Said saidUnusable(const std::string& file, const std::string& reason, bool json);
+/// The exit code that a verdict stands for.
+int exitCodeOf(Verdict verdict);
+
+}  // namespace samestep::program
