@@ -25,8 +25,9 @@ struct SoftStart {
   S velocity[3]{};  ///< x, y, angular: m/s, rad/s.
   S push[3]{};      ///< What a substep adds to it.
   S kept = S(1);    ///< What damping leaves of it in one substep.
-  /// Inverse moment times mass, 1/m^2.
+  /// Inverse moment times mass, 1/m^2; and the mass, kg, 0 of what contacts leave as it is.
   S momentPerMass{};
+  S mass{};
   /// Nothing of the body is farther from its centre of mass than two to the power of it, m.
   int radiusBits = 0;
 };

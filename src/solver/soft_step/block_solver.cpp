@@ -460,65 +460,107 @@ SoftMotion<S> BlockSolver<S, N>::motion(std::uint32_t index) const {
 }
 
 template <Scalar S, class N>
-void BlockSolver<S, N>::bounce() {
-  for (std::uint32_t i = 0; i < blockCount_; ++i) {
-    Block& block = blocks_[i];
-    if (block.bounces == 0) continue;
-    Rest& rest = rests_[i];
-    for (int lane = 0; lane < N::kLanes; ++lane) {
-      const std::uint32_t indexA = block.bodyA[lane], indexB = block.bodyB[lane];
-      const int radiusA = (*starts_)[indexA].radiusBits, radiusB = (*starts_)[indexB].radiusBits;
-      const Vector<S> n(units_.fromUnit(block.normalX[lane]), units_.fromUnit(block.normalY[lane]));
-      const S shareA = units_.fromUnit(block.shareA[lane]);
-      for (int k = 0; k < block.count[lane]; ++k) {
-        auto& axis = block.point[k].normal;
-        const S wanted = min(units_.fromSum(rest.bounce[k][lane]), kMaxSum<S>);
-        if (wanted == S(0) || units_.fromSum(rest.normalTotal[k][lane]) == S(0)) continue;
-        const auto speedOf = [&](std::uint32_t body, int which) {
-          return units_.fromSpeed(bodies_[body].velocity[which]);
-        };
-        const S armA = units_.fromArm(axis.armA[lane], radiusA);
-        const S armB = units_.fromArm(axis.armB[lane], radiusB);
-        const S speed =
-            dot(n.x, speedOf(indexB, 0) - speedOf(indexA, 0), n.y, speedOf(indexB, 1) - speedOf(indexA, 1)) +
-            cross(armB, units_.fromTurn(bodies_[indexB].velocity[2], radiusB), armA,
-                  units_.fromTurn(bodies_[indexA].velocity[2], radiusA));
-        S spinA, spinB;
-        if constexpr (N::kStoresSpins) {
-          spinA = units_.fromSpin(axis.spinA[lane], radiusA);
-          spinB = units_.fromSpin(axis.spinB[lane], radiusB);
-        } else {
-          spinA = block.moments.momentA[lane] * armA;
-          spinB = block.moments.momentB[lane] * armB;
-        }
-        // Asked for once, and so more exact than that of the passes, which come nearer each time.
-        const S mass = reciprocal(S(1) + dot(spinA, armA, spinB, armB));
-        const S before = units_.fromSum(axis.sum[lane]);
-        const S after = clamp(before + mass * (wanted - speed), S(0), kMaxSum<S>);
-        const S change = after - before;
-        std::int64_t misfit = 0;
-        axis.sum[lane] = units_.sum(after, misfit);
-        rest.normalTotal[k][lane] = units_.sum(units_.fromSum(rest.normalTotal[k][lane]) + change, misfit);
-        const auto push = [&](std::uint32_t index, S share, S along, S turn, int radiusBits) {
-          SoftBody<N>& body = bodies_[index];
-          body.velocity[0] =
-              heldSpeed<S, N>(units_.speed(speedOf(index, 0) + share * (n.x * along), misfit), 0);
-          body.velocity[1] =
-              heldSpeed<S, N>(units_.speed(speedOf(index, 1) + share * (n.y * along), misfit), 1);
-          body.velocity[2] = heldSpeed<S, N>(
-              units_.turn(units_.fromTurn(body.velocity[2], radiusBits) + turn, radiusBits, misfit), 2);
-        };
-        const auto turned = [&](S spin) {
-          if constexpr (FixedNumber<S>) {
-            return ScalarLanes<S>::spinOf(spin, change);
-          } else {
-            return spin * change;
-          }
-        };
-        if ((block.fixedA >> lane & 1) == 0) push(indexA, shareA, -change, -turned(spinA), radiusA);
-        if ((block.fixedB >> lane & 1) == 0) push(indexB, S(1) - shareA, change, turned(spinB), radiusB);
-      }
+void BlockSolver<S, N>::bounce(const std::vector<Pair<S>>& pairs, S bounceThreshold,
+                               Restitution<S>& restitution) {
+  restitution.clear(bodies_.size());
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+    const SoftStart<S>& start = (*starts_)[i];
+    BounceBody<S>& body = restitution.bodies[i];
+    for (int k = 0; k < 3; ++k) {
+      const int radius = k == 2 ? start.radiusBits : 0;
+      const Speed velocity = bodies_[i].velocity[k];
+      body.before[k] = start.velocity[k];
+      body.velocity[k] = k == 2 ? units_.fromTurn(velocity, radius) : units_.fromSpeed(velocity);
+      body.moved[k] = units_.fromWay(bodies_[i].moved[k], radius);
+      body.pushed[k] = start.push[k];
     }
+    body.perSecond = settings_->perSubstep;
+    body.mass = start.mass;
+    body.momentPerMass = start.momentPerMass;
+  }
+  for (std::uint32_t i = 0; i < blockCount_; ++i) findBounces(i, pairs, bounceThreshold, restitution);
+  restitution.solve();
+  for (const BouncePoint<S>& point : restitution.points) takeBounce(point, restitution);
+}
+
+/// Adds the points of a block that give back: of pairs that struck or passed on a blow. What they held before
+/// the step they hold, and do not give back.
+template <Scalar S, class N>
+void BlockSolver<S, N>::findBounces(std::uint32_t at, const std::vector<Pair<S>>& pairs, S bounceThreshold,
+                                    Restitution<S>& restitution) const {
+  const Block& block = blocks_[at];
+  const Rest& rest = rests_[at];
+  for (int lane = 0; lane < N::kLanes; ++lane) {
+    if (block.count[lane] == 0) continue;
+    const Pair<S>& pair = pairs[rest.pair[lane]];
+    if (pair.elasticity == S(0)) continue;
+    const S inverseShare = reciprocal(units_.fromUnit(units_.larger(block.shareA[lane])));
+    S taken[kMaxContactsPerPair]{}, sum = S(0);
+    bool strikes = false;
+    for (int k = 0; k < block.count[lane]; ++k) {
+      const S held = min(pair.contacts[k].normalSpeed, kMaxSum<S>) * inverseShare * S(settings_->substeps);
+      const S total = min(units_.fromSum(rest.normalTotal[k][lane]), S(1 << 26));
+      taken[k] = clamp(total - held, S(0), kMaxSum<S>);
+      sum += taken[k];
+      strikes = strikes || (rest.bounce[k][lane] != typename N::Sum(0) && total != S(0));
+    }
+    if (!strikes && sum <= bounceThreshold) continue;
+    for (int k = 0; k < block.count[lane]; ++k) {
+      if (taken[k] != S(0)) addBounce(at, lane, k, pair, taken[k], restitution);
+    }
+  }
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::addBounce(std::uint32_t at, int lane, int index, const Pair<S>& pair, S taken,
+                                  Restitution<S>& restitution) const {
+  const Block& block = blocks_[at];
+  const Rest& rest = rests_[at];
+  const auto& normal = block.point[index].normal;
+  const auto& tangent = block.point[index].tangent;
+  BouncePoint<S>& point = restitution.points.emplace_back();
+  point.bodyA = block.bodyA[lane];
+  point.bodyB = block.bodyB[lane];
+  const int radiusA = (*starts_)[point.bodyA].radiusBits, radiusB = (*starts_)[point.bodyB].radiusBits;
+  point.normal = {units_.fromUnit(block.normalX[lane]), units_.fromUnit(block.normalY[lane])};
+  point.shareA = units_.fromUnit(block.shareA[lane]);
+  point.armA = units_.fromArm(normal.armA[lane], radiusA);
+  point.armB = units_.fromArm(normal.armB[lane], radiusB);
+  point.tangentArmA = units_.fromArm(tangent.armA[lane], radiusA);
+  point.tangentArmB = units_.fromArm(tangent.armB[lane], radiusB);
+  if constexpr (N::kStoresSpins) {
+    point.spinA = units_.fromSpin(normal.spinA[lane], radiusA);
+    point.spinB = units_.fromSpin(normal.spinB[lane], radiusB);
+  } else {
+    point.spinA = block.moments.momentA[lane] * point.armA;
+    point.spinB = block.moments.momentB[lane] * point.armB;
+  }
+  point.pressed = units_.fromSum(rest.normalTotal[index][lane]);
+  point.rubbed = units_.fromSum(rest.tangentTotal[index][lane]);
+  point.surface = units_.fromSpeed(block.surface[lane]);
+  point.elasticity = pair.elasticity;
+  point.taken = taken;
+  point.block = at;
+  point.lane = static_cast<std::uint8_t>(lane);
+  point.index = static_cast<std::uint8_t>(index);
+}
+
+template <Scalar S, class N>
+void BlockSolver<S, N>::takeBounce(const BouncePoint<S>& point, const Restitution<S>& restitution) {
+  std::int64_t misfit = 0;
+  // What leaves holds nothing in the next step.
+  BlockPoint<N>& from = blocks_[point.block].point[point.index];
+  from.normal.sum[point.lane] = from.tangent.sum[point.lane] = typename N::Sum(0);
+  auto& total = rests_[point.block].normalTotal[point.index][point.lane];
+  total = units_.sum(point.pressed + point.rebound, misfit);
+  for (const std::uint32_t index : {point.bodyA, point.bodyB}) {
+    const BounceBody<S>& body = restitution.bodies[index];
+    if (body.mass == S(0)) continue;
+    const int radius = (*starts_)[index].radiusBits;
+    Speed(&to)[4] = bodies_[index].velocity;
+    to[0] = heldSpeed<S, N>(units_.speed(body.velocity[0], misfit), 0);
+    to[1] = heldSpeed<S, N>(units_.speed(body.velocity[1], misfit), 1);
+    to[2] = heldSpeed<S, N>(units_.turn(body.velocity[2], radius, misfit), 2);
   }
 }
 

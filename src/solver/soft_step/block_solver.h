@@ -14,6 +14,7 @@
 #include "solver/kernels/soft_units.h"
 #include "solver/soft_step/block_groups.h"
 #include "solver/soft_step/block_memory.h"
+#include "solver/soft_step/restitution.h"
 
 namespace samestep {
 
@@ -65,8 +66,10 @@ class BlockSolver {
   /// @return false where a number left the range on the way, or the call shall end: nothing is then worth
   ///         anything
   bool run(bool strikes, bool pushes, Crew& crew, Budget& budget);
-  /// After the last one: what bounces.
-  void bounce();
+  /// After the last one: contacts that struck give back what they took, and so do those that passed on more
+  /// than a bounce needs.
+  /// @param pairs  with what they kept from the step before
+  void bounce(const std::vector<Pair<S>>& pairs, S bounceThreshold, Restitution<S>& restitution);
   SoftMotion<S> motion(std::uint32_t body) const;
   /// Writes the impulses back.
   void store(std::vector<Pair<S>>& pairs, Crew& crew) const;
@@ -85,6 +88,11 @@ class BlockSolver {
   void markPushed(Block& block, int lane, const Pair<S>& pair, S overlap) const;
   void addPushes(std::uint32_t begin, std::uint32_t end);
   void takePushes(std::uint32_t begin, std::uint32_t end);
+  void findBounces(std::uint32_t at, const std::vector<Pair<S>>& pairs, S bounceThreshold,
+                   Restitution<S>& restitution) const;
+  void addBounce(std::uint32_t at, int lane, int index, const Pair<S>& pair, S taken,
+                 Restitution<S>& restitution) const;
+  void takeBounce(const BouncePoint<S>& point, const Restitution<S>& restitution);
   void tellImpulse(std::uint32_t at, int lane, Pair<S>& pair) const;
   void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;
 

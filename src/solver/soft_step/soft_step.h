@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/soft_step/block_solver.h"
+#include "solver/soft_step/restitution.h"
 
 namespace samestep {
 
@@ -91,6 +92,7 @@ struct SoftStep {
   /// Whether any contact may bounce, whether any strikes, whether any is pushed apart: see BlockSolver.
   bool bounces = false, strikes = false, pushes = false;
   SoftSolvers<S> solvers;
+  Restitution<S> restitution;
 
   /// Forgets the last step.
   void clear();

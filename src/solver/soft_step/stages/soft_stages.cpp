@@ -134,6 +134,7 @@ void SoftStages<S>::takeBody(const StepContext<S>& step, std::uint32_t slot, Sof
     return;
   }
   start.momentPerMass = body.momentPerMass();
+  start.mass = body.isDynamic() ? body.mass() : S(0);
   if constexpr (FixedNumber<S>) start.radiusBits = radiusBits(step.derived, slot, body);
   index = soft_.add(start);
   soft_.frames[slot] = frameOf(body, index, start.radiusBits);
@@ -246,14 +247,16 @@ void SoftStages<S>::solve(StepContext<S>& step) {
   Crew& team = step.team;
   const auto run = [&](auto& solver) {
     bool solved = false;
-    team.during(team.helpsWith(solvedPairs_.size(), StepContext<S>::kFewPairs), [&] {
-      solved = solver.run(soft_.strikes, soft_.pushes, team, step.wiring.budget);
-      if (!solved) return;
-      if (soft_.bounces) solver.bounce();
-      solver.store(step.state.pairs, team);
-    });
+    const bool together = team.helpsWith(solvedPairs_.size(), StepContext<S>::kFewPairs);
+    team.during(together,
+                [&] { solved = solver.run(soft_.strikes, soft_.pushes, team, step.wiring.budget); });
     step.wiring.budget.endWhereAsked();
-    return solved;
+    if (!solved) return false;
+    // By itself, for it takes memory.
+    if (soft_.bounces)
+      solver.bounce(step.state.pairs, step.state.settings.bounceThreshold, soft_.restitution);
+    team.during(together, [&] { solver.store(step.state.pairs, team); });
+    return true;
   };
   while (!soft_.solvers.with(run)) {
     soft_.solvers.fallBack();

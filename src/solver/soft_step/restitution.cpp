@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "solver/soft_step/restitution.h"
+
+#include "base/require_ieee.h"
+
+namespace samestep {
+namespace {
+
+/// What a velocity is changed by at the most, m/s and rad/s.
+template <Scalar S>
+inline constexpr S kMostChange = S(1 << 22);
+
+/// Points are solved so often, or until none changes by more than this, m/s.
+constexpr int kMostPasses = 100;
+template <Scalar S>
+inline constexpr S kStill = S(0x1p-28);
+
+/// The relative speed of the points along an axis, m/s.
+template <Scalar S>
+S relativeSpeed(const Vector<S>& axis, S armA, S armB, const S (&a)[3], const S (&b)[3]) {
+  return dot(axis.x, b[0] - a[0], axis.y, b[1] - a[1]) + cross(armB, b[2], armA, a[2]);
+}
+
+/// x * y, held in size.
+template <Scalar S>
+S heldProduct(S x, S y) {
+  return toScalarWithin(toScaled(x) * toScaled(y), kMostChange<S>);
+}
+
+}  // namespace
+
+/// Solves one point, with no more than it has given taken back.
+/// @return by how much it changed
+template <Scalar S>
+S Restitution<S>::pressPoint(BouncePoint<S>& point) {
+  BounceBody<S>&a = bodies[point.bodyA], &b = bodies[point.bodyB];
+  const S speed = relativeSpeed(point.normal, point.armA, point.armB, a.velocity, b.velocity);
+  const S k = S(1) + dot(point.spinA, point.armA, point.spinB, point.armB);
+  const S u = max(-heldProduct(speed, reciprocal(k)), -point.taken);
+  point.taken += u;
+  point.pressed += u;
+  const auto change = [&](BounceBody<S>& body, S share, S spin, S by) {
+    if (body.mass == S(0)) return;
+    const S changes[3] = {share * (point.normal.x * by), share * (point.normal.y * by),
+                          heldProduct(spin, by)};
+    for (int i = 0; i < 3; ++i) {
+      body.velocity[i] = clamp(body.velocity[i] + changes[i], -kMostChange<S>, kMostChange<S>);
+    }
+  };
+  change(a, point.shareA, point.spinA, -u);
+  change(b, S(1) - point.shareA, point.spinB, u);
+  return abs(u);
+}
+
+template <Scalar S>
+void Restitution<S>::press() {
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    S most = S(0);
+    for (BouncePoint<S>& point : points) most = max(most, pressPoint(point));
+    if (most <= kStill<S>) return;
+  }
+}
+
+template <Scalar S>
+std::uint32_t Restitution<S>::groupOf(std::uint32_t body) {
+  while (group_[body] != body) body = group_[body] = group_[group_[body]];
+  return body;
+}
+
+/// Puts bodies together that points connect; a group is named by its first body.
+template <Scalar S>
+void Restitution<S>::findGroups() {
+  group_.resize(bodies.size());
+  for (std::uint32_t i = 0; i < group_.size(); ++i) group_[i] = i;
+  for (const BouncePoint<S>& point : points) {
+    if (bodies[point.bodyA].mass == S(0) || bodies[point.bodyB].mass == S(0)) continue;
+    const std::uint32_t a = groupOf(point.bodyA), b = groupOf(point.bodyB);
+    group_[max(a, b)] = min(a, b);
+  }
+}
+
+/// Adds up what bodies have lost of their energies.
+template <Scalar S>
+void Restitution<S>::takeBodies() {
+  const Scaled<S> half = toScaled(ratio<S>(1, 2));
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const BounceBody<S>& body = bodies[i];
+    if (body.mass == S(0)) continue;
+    Scaled<S> lost{};
+    for (int k = 0; k < 3; ++k) {
+      if (k == 2 && body.momentPerMass == S(0)) continue;
+      const Scaled<S> kinetic =
+          toScaled(body.before[k] - body.velocity[k]) * toScaled(body.before[k] + body.velocity[k]) * half;
+      const Scaled<S> work = toScaled(body.pushed[k]) * toScaled(body.moved[k]) * toScaled(body.perSecond);
+      const Scaled<S> sum = kinetic + work;
+      lost += k == 2 ? sum / toScaled(body.momentPerMass) : sum;
+    }
+    balances_[groupOf(i)].taken += lost * toScaled(body.mass);
+  }
+}
+
+/// Adds what a point gives back, and what moves bodies through it that contacts leave as they are.
+template <Scalar S>
+void Restitution<S>::takePoint(const BouncePoint<S>& point) {
+  const BounceBody<S>&a = bodies[point.bodyA], &b = bodies[point.bodyB];
+  const Vector<S> n = point.normal, t = perp(n);
+  Balance& balance = balances_[groupOf(a.mass == S(0) ? point.bodyB : point.bodyA)];
+  const Scaled<S> mass = a.mass == S(0) ? toScaled(b.mass) * toScaled(S(1) - point.shareA)
+                                        : toScaled(a.mass) * toScaled(point.shareA);
+  const S still[3] = {};
+  const S(&moverA)[3] = a.mass == S(0) ? a.velocity : still;
+  const S(&moverB)[3] = b.mass == S(0) ? b.velocity : still;
+  const S along = relativeSpeed(n, point.armA, point.armB, moverA, moverB);
+  const S aside = relativeSpeed(t, point.tangentArmA, point.tangentArmB, moverA, moverB) + point.surface;
+  balance.taken -=
+      (toScaled(point.pressed) * toScaled(along) + toScaled(point.rubbed) * toScaled(aside)) * mass;
+  const S now = relativeSpeed(n, point.armA, point.armB, a.velocity, b.velocity);
+  const S change = relativeSpeed(n, point.armA, point.armB, changes_[point.bodyA].velocity,
+                                 changes_[point.bodyB].velocity);
+  const Scaled<S> rebound = toScaled(point.rebound) * mass;
+  balance.linear += rebound * toScaled(now);
+  balance.square += rebound * toScaled(change) * toScaled(ratio<S>(1, 2));
+  balance.elasticity = max(balance.elasticity, point.elasticity);
+}
+
+/// The largest part of 1 that gives back no more than it may.
+template <Scalar S>
+S Restitution<S>::partOf(const Balance& balance) {
+  const Scaled<S> e = toScaled(balance.elasticity);
+  const Scaled<S> may = sign(balance.taken) > 0 ? balance.taken * e * e : Scaled<S>{};
+  if (sign(balance.linear + balance.square - may) <= 0) return S(1);
+  if (sign(balance.square) <= 0) return S(0);
+  // part^2 + p part = q
+  constexpr S kMost = S(1 << 12);
+  const Scaled<S> ratioP = balance.linear / balance.square;
+  const S p = sign(ratioP) < 0 ? -toScalarWithin(-ratioP, kMost) : toScalarWithin(ratioP, kMost);
+  const S q = toScalarWithin(may / balance.square, kMost);
+  const S root = sqrt(p * p + S(4) * q);
+  const S part = p + root == S(0) ? S(0) : p < S(0) ? (root - p) * ratio<S>(1, 2) : (q + q) / (p + root);
+  return clamp(part, S(0), S(1));
+}
+
+template <Scalar S>
+void Restitution<S>::solve() {
+  press();
+  for (BouncePoint<S>& point : points) {
+    point.rebound = min(heldProduct(point.taken, point.elasticity), kMostChange<S>);
+  }
+  findGroups();
+  changes_.assign(bodies.size(), {});
+  balances_.assign(bodies.size(), {});
+  for (const BouncePoint<S>& point : points) {
+    const auto change = [&](std::uint32_t body, S share, S spin, S u) {
+      if (bodies[body].mass == S(0)) return;
+      S(&velocity)[3] = changes_[body].velocity;
+      const S by[3] = {share * (point.normal.x * u), share * (point.normal.y * u), heldProduct(spin, u)};
+      for (int k = 0; k < 3; ++k) velocity[k] = clamp(velocity[k] + by[k], -kMostChange<S>, kMostChange<S>);
+    };
+    change(point.bodyA, point.shareA, point.spinA, -point.rebound);
+    change(point.bodyB, S(1) - point.shareA, point.spinB, point.rebound);
+  }
+  takeBodies();
+  for (const BouncePoint<S>& point : points) takePoint(point);
+  for (Balance& balance : balances_) balance.part = partOf(balance);
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].mass == S(0)) continue;
+    const S part = balances_[groupOf(i)].part;
+    for (int k = 0; k < 3; ++k) bodies[i].velocity[k] += changes_[i].velocity[k] * part;
+  }
+  for (BouncePoint<S>& point : points) {
+    const bool fixedA = bodies[point.bodyA].mass == S(0);
+    point.rebound = point.rebound * balances_[groupOf(fixedA ? point.bodyB : point.bodyA)].part;
+  }
+}
+
+#define SAMESTEP_EACH_SCALAR template class Restitution<S>;
+#include <samestep/each_scalar.h>
+
+}  // namespace samestep
