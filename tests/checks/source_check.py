@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-ENGINE_FOLDERS = ("include", "src", "fixed", "replay", "lockstep")
+ENGINE_FOLDERS = ("include", "src", "fixed", "replay", "lockstep", "capi")
 # Looked through for leftovers and machine paths only.
 OTHER_FOLDERS = ("tests", "bench", "fuzz", "examples", "scripts", "cmake", "docs")
 CODE_SUFFIXES = (".h", ".cpp")
@@ -259,7 +259,7 @@ class Check:
         """The file of this project that an include names, or None."""
         beside = [path.parent / name]
         searched = [Path(folder) / name for folder in
-                    ("include", "fixed/include", "replay/include", "lockstep/include", "src", "replay", "lockstep")]
+                    ("include", "fixed/include", "replay/include", "lockstep/include", "capi/include", "src", "replay", "lockstep")]
         for candidate in beside + searched:
             if (self.root / candidate).is_file():
                 return candidate
