@@ -1,13 +1,13 @@
 # Takes the example out of README.md, builds it in a project of its own, runs it, and compares what it
-# prints with what README says it prints.
+# prints with what README says it prints. The example of docs/c.md does the same with an installed C interface.
 
-# A fenced block of README that stands behind <!-- NAME -->.
-function(read_block name result)
-  file(READ ${SOURCE}/README.md text)
+# A fenced block of a page that stands behind <!-- NAME -->.
+function(read_block page name result)
+  file(READ ${SOURCE}/${page} text)
   foreach(edge "<!-- ${name} -->\n```" "\n")
     string(FIND "${text}" "${edge}" start)
     if(start EQUAL -1)
-      message(FATAL_ERROR "README.md has no fenced block behind <!-- ${name} -->")
+      message(FATAL_ERROR "${page} has no fenced block behind <!-- ${name} -->")
     endif()
     string(LENGTH "${edge}" length)
     math(EXPR start "${start} + ${length}")
@@ -23,9 +23,11 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
-read_block(example example)
-read_block(output expected)
+read_block(README.md example example)
+read_block(README.md output expected)
 file(WRITE ${WORK}/example.cpp "${example}")
+read_block(docs/c.md example example)
+file(WRITE ${WORK}/example.c "${example}")
 
 set(options)
 if(KIND STREQUAL installed)
@@ -49,11 +51,21 @@ if(KIND STREQUAL fixed)
 endif()
 
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${WORK}/build -G ${GENERATOR}
-  -D CMAKE_BUILD_TYPE=Release -D EXAMPLE=${WORK}/example.cpp
+  -D CMAKE_BUILD_TYPE=Release -D EXAMPLE=${WORK}/example.cpp -D EXAMPLE_C=${WORK}/example.c
   -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
   -D CMAKE_CXX_FLAGS=${FLAGS} -D CMAKE_CXX_FLAGS_RELEASE=${FLAGS_RELEASE} ${options})
 run(${CMAKE_COMMAND} --build ${WORK}/build --target example)
 execute_process(COMMAND ${WORK}/build/example OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
 if(NOT printed STREQUAL expected)
   message(FATAL_ERROR "README.md says the example prints\n${expected}\nit prints\n${printed}")
+endif()
+if(KIND STREQUAL installed)
+  read_block(docs/c.md output expected)
+  foreach(program example_c example_c_shared)
+    run(${CMAKE_COMMAND} --build ${WORK}/build --target ${program})
+    execute_process(COMMAND ${WORK}/build/${program} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
+    if(NOT printed STREQUAL expected)
+      message(FATAL_ERROR "docs/c.md says the example prints\n${expected}\n${program} prints\n${printed}")
+    endif()
+  endforeach()
 endif()
