@@ -193,7 +193,7 @@ samestep_status samestep_world_apply(samestep_world* world, const samestep_comma
                                      samestep_body_id* body) {
   return call(world, [&]<class World>(World& of) {
     const auto made = toCommand<typename World::Number>(current(command));
-    const samestep::BodyId spawned = samestep::apply(of.space, made, wiringOf(of));
+    const samestep::BodyId spawned = samestep::applyCommand(of.space, made, wiringOf(of));
     if (body != nullptr) *body = toC(spawned);
   });
 }
