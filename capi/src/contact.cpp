@@ -75,20 +75,26 @@ void runPostStep(Space<S>&, std::uint64_t key, void* data) {
   WorldOf<S>& world = *static_cast<WorldOf<S>*>(data);
   // Out of the list first: the function may have itself run again.
   const auto waiting = world.postStep.extract(key);
+  const InCallback inCallback(world);
   if (!waiting.empty()) waiting.mapped().function(&world, key, waiting.mapped().data);
 }
 
+/// The Space knows what waits; the records here are what it calls.
 template <Scalar S>
 bool addPostStep(WorldOf<S>& world, std::uint64_t key, samestep_post_step function, void* data) {
   requireOr(function != nullptr, SAMESTEP_NULL_ARGUMENT);
-  if (!world.postStep.try_emplace(key, typename WorldOf<S>::PostStepRecord{function, data}).second)
-    return false;
+  const typename WorldOf<S>::PostStepRecord record{function, data};
+  auto [place, isNew] = world.postStep.try_emplace(key, record);
+  const typename WorldOf<S>::PostStepRecord before = std::exchange(place->second, record);
+  bool added = false;
   try {
-    return world.space.addPostStepCallback(runPostStep<S>, key, &world);
+    added = world.space.addPostStepCallback(runPostStep<S>, key, &world);
   } catch (...) {
-    world.postStep.erase(key);
+    world.postStep.insert_or_assign(key, before);
     throw;
   }
+  if (!added) world.postStep.insert_or_assign(key, before);
+  return added;
 }
 
 /// Runs action(arbiter, its world) on a contact. Nothing leaves it.

@@ -79,6 +79,7 @@ Command<S> toCommand(const samestep_command& from) {
 void applyInput(samestep_world& world, samestep_input_function function, std::span<const std::uint8_t> bytes,
                 void* data) {
   require<Fault::MissingCallback>(function != nullptr);
+  const InCallback inCallback(world);
   const samestep_status status = function(&world, bytes.data(), bytes.size(), data);
   if (status != SAMESTEP_OK) throw InputRefused(status);
 }

@@ -83,7 +83,7 @@ samestep_status samestep_world_destroy(samestep_world* world) {
   if (world == nullptr) return SAMESTEP_OK;
   const samestep_status status = call(world, [&](auto& of) {
     requireOr(of.destroyable && of.recorders == 0, SAMESTEP_IN_USE);
-    samestep::require<samestep::Fault::SpaceLocked>(!of.space.isLocked());
+    samestep::require<samestep::Fault::SpaceLocked>(!of.space.isLocked() && of.callbacks == 0);
   });
   if (status == SAMESTEP_OK) delete world;
   return status;

@@ -22,6 +22,8 @@ struct samestep_world {
   /// Of the caller: false for one that lives for a replay.
   bool destroyable = true;
   std::int32_t recorders = 0;
+  /// Functions of the caller's that are under way while the Space is not locked.
+  std::int32_t callbacks = 0;
   samestep_failure failure = nullptr;
   void* failureData = nullptr;
   samestep_log log = nullptr;
@@ -31,6 +33,18 @@ struct samestep_world {
 };
 
 namespace samestep::c {
+
+/// Notes that a function of the caller's is under way.
+class InCallback {
+ public:
+  explicit InCallback(samestep_world& world) : world_(world) { ++world_.callbacks; }
+  ~InCallback() { --world_.callbacks; }
+  InCallback(const InCallback&) = delete;
+  InCallback& operator=(const InCallback&) = delete;
+
+ private:
+  samestep_world& world_;
+};
 
 /// A game's job system behind the two numbers and the function that C knows of it.
 class RunnerOfCaller final : public TaskRunner {

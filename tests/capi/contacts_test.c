@@ -159,6 +159,7 @@ typedef struct remembered {
 static void remember(samestep_world* world, uint64_t key, void* data) {
   remembered* all = data;
   all->keys[all->count++] = key;
+  check_status(samestep_world_destroy(world), SAMESTEP_SPACE_LOCKED, "a world that calls", __LINE__);
   add_box(world, SAMESTEP_DYNAMIC, 10.0 * (double)key, 50, NULL);
 }
 

@@ -229,8 +229,9 @@ SAMESTEP_C_API void samestep_world_def_init(samestep_world_def* def);
 /* Makes a world with one static body. Refused as the settings are, and with SAMESTEP_WRONG_VERSION,
  * SAMESTEP_SCALAR_NOT_BUILT, SAMESTEP_UNKNOWN_VALUE. */
 SAMESTEP_C_API samestep_status samestep_world_create(const samestep_world_def* def, samestep_world** world);
-/* Ends a world; null does nothing. SAMESTEP_SPACE_LOCKED from within a step; SAMESTEP_IN_USE while a recorder
- * records it, and for a world that a callback of samestep_verify was given. */
+/* Ends a world; null does nothing. SAMESTEP_SPACE_LOCKED from within a step or a function that the world
+ * calls; SAMESTEP_IN_USE while a recorder records it, and for a world that a callback of samestep_verify was
+ * given. */
 SAMESTEP_C_API samestep_status samestep_world_destroy(samestep_world* world);
 
 /* The sentence that tells why the last refused call for this world was refused, or with null the last one of
@@ -764,11 +765,11 @@ SAMESTEP_C_API samestep_status samestep_body_update_velocity(samestep_world* wor
                                                              double gravity_x, double gravity_y,
                                                              double damping, double seconds);
 
-/* Runs after the step or query that is under way. */
+/* Runs after the step or query that is under way. It may do anything but destroy the world. */
 typedef void (*samestep_post_step)(samestep_world* world, uint64_t key, void* data);
 /* Has a function run after the step or query that is under way, or at once if there is none; once per key
  * until then: *added is 0 if the key waits already. They run in the order in which they were added. `added`
- * may be null. */
+ * may be null. Those that wait when another world is brought in, or whose step is refused, are dropped. */
 SAMESTEP_C_API samestep_status samestep_world_add_post_step(samestep_world* world,
                                                             samestep_post_step function, uint64_t key,
                                                             void* data, int32_t* added);
