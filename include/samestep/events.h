@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include <samestep/arbiter.h>
 #include <samestep/body.h>
@@ -41,6 +42,52 @@ using BodyVelocityFunc = void (*)(Body<S>& body, const Vector<S>& gravity, S dam
 struct RangeEvent {
   BodyId body;
   std::uint8_t held = 0;  ///< Bits of Body::Held.
+};
+
+/// Two shapes that began to touch, or ceased to: where begin and separate of a handler are called, or would
+/// be if there were one. A has the lower id.
+struct ContactEvent {
+  ShapeId shapeA;
+  ShapeId shapeB;
+  BodyId bodyA;
+  BodyId bodyB;
+  std::uint8_t sensor = 0;   ///< 1 where one of the shapes is a sensor.
+  std::uint8_t removal = 0;  ///< 1 of an end that a call between steps brought about: the shapes may be gone.
+
+  friend constexpr bool operator==(const ContactEvent&, const ContactEvent&) = default;
+};
+
+/// Two shapes that struck each other: their contact was pushed in the step, at points that approached.
+template <Scalar S>
+struct ImpactEvent {
+  ShapeId shapeA;
+  ShapeId shapeB;
+  BodyId bodyA;
+  BodyId bodyB;
+  Vector<S> point{};   ///< On the surface of A, of the contact point that approached fastest, m.
+  Vector<S> normal{};  ///< From A to B, a unit vector.
+  S speed{};           ///< At which it approached when the step began, m/s.
+  S impulse{};         ///< Along the normal on B, of all points in the step, N s, saturated.
+
+  friend constexpr bool operator==(const ImpactEvent&, const ImpactEvent&) = default;
+};
+
+/// What a Space lists of contacts: nothing at first, which costs nothing.
+template <Scalar S>
+struct EventListing {
+  bool contacts = false;  ///< What began to touch and what ceased to.
+  bool impacts = false;
+  S slowestImpact{1};  ///< Slower impacts are not listed, m/s, 0 to 2^11.
+};
+
+/// What the last step listed, by rising ids of A and B.
+template <Scalar S>
+struct ContactEvents {
+  std::uint64_t tick = 0;  ///< Space::stamp() after that step; 0 where none has been listed.
+  std::span<const ContactEvent> begins;
+  /// Those that calls between the steps brought about as well: a shape removed, contacts filtered.
+  std::span<const ContactEvent> ends;
+  std::span<const ImpactEvent<S>> impacts;
 };
 
 /// The stages of a step. Sequential impulses make them in this order; the soft step integrates velocities

@@ -325,6 +325,15 @@ class Space {
 
   /// What was held at its limit during the last step, by body id.
   std::span<const RangeEvent> rangeEvents() const;
+  /// Which contacts the Space lists from the next step on. Wiring: no saved world carries it, and no result
+  /// depends on it.
+  /// @throws SpaceLocked; ValueOutOfRange for a slowest impact outside [0, 2^11]
+  void setEventListing(const EventListing<S>& listing);
+  const EventListing<S>& eventListing() const;
+  /// What the last step listed: the same whatever the number of workers and, of objects with given ids, the
+  /// order in which they came. It lives until the next step, or until a world is brought in, which leaves
+  /// nothing listed. A step that is refused leaves it as it is.
+  ContactEvents<S> contactEvents() const;
   /// Iteration limits reached and the like.
   const CollisionStats& collisionStats() const;
   /// How many steps were to be fast but had numbers that do not fit, and were made accurately: see

@@ -121,16 +121,6 @@ void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
   pair_.solvedNormal = {};
 }
 
-namespace {
-
-/// kg of the lighter of two bodies, of which one can be moved.
-template <Scalar S>
-Scaled<S> lighterMass(const Body<S>& a, const Body<S>& b) {
-  return toScaled((a.inverseMass() > b.inverseMass() ? a : b).mass());
-}
-
-}  // namespace
-
 template <Scalar S>
 Vector<S> Arbiter<S>::totalImpulse() const {
   if (count() == 0) return {};

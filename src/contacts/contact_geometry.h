@@ -45,6 +45,12 @@ template <Scalar S>
   return {armA, armB, dot((b.worldCenter() - a.worldCenter()) + (armB - armA), normal)};
 }
 
+/// kg of the lighter of two bodies, of which one can be moved.
+template <Scalar S>
+Scaled<S> lighterMass(const Body<S>& a, const Body<S>& b) {
+  return toScaled((a.inverseMass() > b.inverseMass() ? a : b).mass());
+}
+
 // Recycling, an idea of Box2D's contact recycling by E. Catto: while two bodies stand to each other as they
 // did when they were collided, normal and points are taken to be fixed to them, and shapes that were apart to
 // be apart. Separations are exact all the same, for they come from where the points are now; what is off is

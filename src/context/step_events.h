@@ -10,12 +10,43 @@
 
 namespace samestep {
 
+/// The lists of contacts of the last step, and what the one under way needs to make them.
+template <Scalar S>
+struct ContactLists {
+  struct Touching {
+    ShapeId a, b;
+  };
+  struct Speed {
+    Vector<S> velocity;
+    S angularVelocity;
+  };
+
+  std::uint64_t tick = 0;
+  std::vector<ContactEvent> begins;
+  std::vector<ContactEvent> ends;
+  std::vector<ImpactEvent<S>> impacts;
+  /// Brought about since the last step, to be listed by the next one.
+  std::vector<ContactEvent> endsBetween;
+  // As the step began: the pairs that touched, by rising ids, and the velocities by body slot.
+  std::vector<Touching> touching;
+  std::vector<Speed> speeds;
+
+  void clear() {
+    tick = 0;
+    begins.clear();
+    ends.clear();
+    impacts.clear();
+    endsBetween.clear();
+  }
+};
+
 /// What a step tells beside the state, read after it.
 template <Scalar S>
 struct StepEvents {
   std::vector<RangeEvent> range;
   CollisionStats collisionStats{};
   std::uint64_t accurateInstead = 0;
+  ContactLists<S> contacts;
   /// Of each body slot, the bits of Body::Held that the step under way noted.
   std::vector<std::uint8_t> held;
 

@@ -87,6 +87,7 @@ struct SpaceWiring {
   BoundHandlers<RegisteredHandler> bound;
   StageObserverFunc<S> observer = nullptr;
   void* observerData = nullptr;
+  EventListing<S> listing{};
   TaskRunner* runner = nullptr;
   KernelTarget kernel = nextBestKernel(KernelTarget::best);
   std::uint32_t maxPairs = kDefaultMaxPairs;

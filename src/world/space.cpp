@@ -359,6 +359,26 @@ std::span<const RangeEvent> Space<S>::rangeEvents() const {
 }
 
 template <Scalar S>
+void Space<S>::setEventListing(const EventListing<S>& listing) {
+  requireUnlocked();
+  require<Fault::ValueOutOfRange>(listing.slowestImpact >= S(0) &&
+                                  listing.slowestImpact <= S(2) * kMaxSpeed<S>);
+  parts_->wiring.listing = listing;
+  if (!listing.contacts) parts_->events.contacts.endsBetween.clear();
+}
+
+template <Scalar S>
+const EventListing<S>& Space<S>::eventListing() const {
+  return parts_->wiring.listing;
+}
+
+template <Scalar S>
+ContactEvents<S> Space<S>::contactEvents() const {
+  const ContactLists<S>& lists = parts_->events.contacts;
+  return {lists.tick, lists.begins, lists.ends, lists.impacts};
+}
+
+template <Scalar S>
 const CollisionStats& Space<S>::collisionStats() const {
   return parts_->events.collisionStats;
 }

@@ -69,6 +69,7 @@ void takeOver(StepContext<S> world) {
   world.derived.forget();
   world.derived.surfacesLacking = true;
   world.events.range.clear();
+  world.events.contacts.clear();
 }
 
 }  // namespace

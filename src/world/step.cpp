@@ -6,6 +6,7 @@
 #include "base/change.h"
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
+#include "contacts/stages/list_contacts.h"
 #include "dynamics/stages/integrate.h"
 #include "world/stage_expectations.h"
 
@@ -66,6 +67,7 @@ template <Scalar S>
 void Step<S>::tellResults(StepContext<S>& step) {
   ContactCallbacks<S>::postSolve(step);
   step.events.listRange(step.state);
+  ListContacts<S>::finish(step);
 }
 
 template <Scalar S>
@@ -85,6 +87,7 @@ bool Step<S>::run(StepContext<S>& step) {
   ++step.state.stamp;
   step.events.begin(step.state);
   step.derived.completePairs(step.state);
+  ListContacts<S>::begin(step);
   // What position functions ask about is the world before any of them moved a body; the soft step begins with
   // it: nothing but what was moved by hand has to be placed.
   if (step.isSoft() || !step.wiring.positionFuncs.empty()) step.derived.refresh(step.state);

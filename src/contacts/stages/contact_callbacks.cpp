@@ -5,6 +5,7 @@
 #include <span>
 
 #include "base/require_ieee.h"
+#include "contacts/stages/list_contacts.h"
 
 namespace samestep {
 
@@ -183,9 +184,10 @@ void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape
   std::uint32_t called = 0;
   for (const std::uint32_t index : ofBody) {
     Pair<S>& pair = pairs[index];
-    if (!meant(pair) || pair.state == ArbiterState::apart || pair.state == ArbiterState::cached) continue;
+    if (!meant(pair) || !hasBegun(pair)) continue;
     payForCall(context, called);
     pair.state = ArbiterState::cached;
+    ListContacts<S>::endBetween(context, pair);
     separate(context, pair, true);
   }
   // Those between two that go move down together, each once.

@@ -18,6 +18,10 @@ struct ContactCallbacks {
   }
   /// Whether anybody is asked if the pair shall be solved.
   static bool mayBeRefused(Context& context, Pair<S>& pair);
+  /// Whether begin has been called for a pair, or would have been, and separate has not.
+  static bool hasBegun(const Pair<S>& pair) {
+    return pair.state != ArbiterState::apart && pair.state != ArbiterState::cached;
+  }
   static Arbiter<S> arbiterOf(Context& context, Pair<S>& pair);
   /// Calls begin for a first contact, then preSolve; whether the pair is to be solved.
   static bool ask(Context& context, Pair<S>& pair);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "context/step_context.h"
+
+namespace samestep {
+
+/// Lists what began to touch, what ceased to and what struck, by comparing the pairs as a step began with
+/// those at its end: whoever decides about a pair in between, the lists agree with what handlers are told.
+template <Scalar S>
+struct ListContacts {
+  using Context = StepContext<S>;
+
+  /// Notes what the step begins with.
+  static void begin(Context& context);
+  /// Makes the lists.
+  static void finish(Context& context);
+  /// Notes the end of a contact between steps.
+  static void endBetween(Context& context, const Pair<S>& pair);
+
+ private:
+  static void listChanges(Context& context);
+  static void listImpact(Context& context, Pair<S>& pair);
+};
+
+#define SAMESTEP_EACH_SCALAR extern template struct ListContacts<S>;
+#include <samestep/each_scalar.h>
+
+}  // namespace samestep
