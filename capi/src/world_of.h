@@ -115,6 +115,9 @@ struct WorldOf : samestep_world {
   std::vector<samestep_point_hit> pointHits;
   std::vector<samestep_segment_hit> segmentHits;
   std::vector<samestep_shape_id> boxHits;
+  std::vector<samestep_contact_event> begins;
+  std::vector<samestep_contact_event> ends;
+  std::vector<samestep_impact_event> impacts;
 };
 
 }  // namespace samestep::c

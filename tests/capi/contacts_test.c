@@ -110,6 +110,38 @@ static void test_handlers(int32_t scalar) {
   check_status(samestep_world_destroy(world), SAMESTEP_OK, "destroy", __LINE__);
 }
 
+static void test_events(int32_t scalar) {
+  samestep_world* world = make_world(scalar);
+  samestep_shape_id ground = 0;
+  samestep_shape_id box = 0;
+  add_box(world, SAMESTEP_STATIC, 0, 0, &ground);
+  const samestep_body_id body = add_box(world, SAMESTEP_DYNAMIC, 0, 2, &box);
+  samestep_events events;
+  check_status(samestep_world_list_events(world, 1, 1, -1), SAMESTEP_VALUE_OUT_OF_RANGE, "speed", __LINE__);
+  check_status(samestep_world_list_events(world, 1, 1, 1), SAMESTEP_OK, "list", __LINE__);
+  int begins = 0;
+  int impacts = 0;
+  for (int tick = 0; tick < 60; ++tick) {
+    steps(world, 1);
+    check_status(samestep_world_get_events(world, &events), SAMESTEP_OK, "events", __LINE__);
+    check(events.tick == (uint64_t)tick + 1, "events of this tick", __LINE__);
+    begins += (int)events.begin_count;
+    for (uint32_t i = 0; i < events.impact_count; ++i, ++impacts) {
+      const samestep_impact_event* hit = &events.impacts[i];
+      check(hit->shape_a == ground && hit->shape_b == box, "the lower id first", __LINE__);
+      check(hit->normal.y > 0.99 && hit->speed > 3 && hit->impulse > 3, "it fell a metre", __LINE__);
+    }
+  }
+  check(begins == 1 && impacts == 1, "it lands once", __LINE__);
+  check_status(samestep_body_destroy(world, body), SAMESTEP_OK, "destroy", __LINE__);
+  steps(world, 1);
+  check_status(samestep_world_get_events(world, &events), SAMESTEP_OK, "events", __LINE__);
+  check(events.end_count == 1 && events.ends[0].removal == 1 && events.ends[0].body_b == body, "and goes",
+        __LINE__);
+  check_status(samestep_world_get_events(world, NULL), SAMESTEP_NULL_ARGUMENT, "null", __LINE__);
+  check_status(samestep_world_destroy(world), SAMESTEP_OK, "destroy", __LINE__);
+}
+
 static void move_by_hand(samestep_world* world, samestep_body_id body, double seconds, void* data) {
   ++*(int*)data;
   samestep_body_state state;
@@ -275,6 +307,7 @@ void test_contacts(void) {
   const int count = scalars(built);
   for (int i = 0; i < count; ++i) {
     test_handlers(built[i]);
+    test_events(built[i]);
     test_functions(built[i]);
     test_post_step(built[i]);
     test_queries(built[i]);

@@ -738,6 +738,49 @@ SAMESTEP_C_API samestep_status samestep_world_get_contacts(samestep_world* world
                                                            const samestep_contact_state** contacts,
                                                            size_t* count);
 
+/* Two shapes that began to touch, or ceased to, whether there is a handler for them or not. */
+typedef struct samestep_contact_event {
+  samestep_shape_id shape_a; /* The lower id. */
+  samestep_shape_id shape_b;
+  samestep_body_id body_a;
+  samestep_body_id body_b;
+  int32_t sensor;  /* 1 where one of the shapes is a sensor. */
+  int32_t removal; /* 1 of an end that a call between steps brought about: the shapes may be gone. */
+} samestep_contact_event;
+
+/* Two shapes that struck each other. */
+typedef struct samestep_impact_event {
+  samestep_shape_id shape_a; /* The lower id. */
+  samestep_shape_id shape_b;
+  samestep_body_id body_a;
+  samestep_body_id body_b;
+  samestep_vec2 point;  /* On the surface of A, of the contact point that approached fastest, m. */
+  samestep_vec2 normal; /* From A to B, a unit vector. */
+  double speed;         /* At which it approached when the step began, m/s. */
+  double impulse;       /* Along the normal on B, of all points in the step, N s. */
+} samestep_impact_event;
+
+/* What the last step listed, by rising ids of A and B. */
+typedef struct samestep_events {
+  uint64_t tick; /* After that step; 0 where none has been listed. */
+  const samestep_contact_event* begins;
+  const samestep_contact_event* ends; /* Those that calls between the steps brought about as well. */
+  const samestep_impact_event* impacts;
+  uint32_t begin_count;
+  uint32_t end_count;
+  uint32_t impact_count;
+  uint32_t reserved;
+} samestep_events;
+
+/* Says which events each further step lists, 1 or 0: beginnings and ends of contacts, and impacts of at least
+ * `slowest_impact`, m/s, 0 to 2^11. None are at first, which costs nothing. No result depends on it, and no
+ * saved world carries it. SAMESTEP_SPACE_LOCKED, SAMESTEP_VALUE_OUT_OF_RANGE. */
+SAMESTEP_C_API samestep_status samestep_world_list_events(samestep_world* world, int32_t contacts,
+                                                          int32_t impacts, double slowest_impact);
+/* What the last step listed. The arrays live until the next step, or until a world is brought in, which
+ * leaves nothing listed; a step that is refused leaves them as they are. */
+SAMESTEP_C_API samestep_status samestep_world_get_events(samestep_world* world, samestep_events* events);
+
 /* Moves a body in place of its velocity; samestep_body_update_position is what the engine's own does. */
 typedef void (*samestep_position_function)(samestep_world* world, samestep_body_id body, double seconds,
                                            void* data);
