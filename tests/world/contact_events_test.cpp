@@ -241,7 +241,7 @@ TYPED_TEST(ContactEventsTest, ARemovedShapeEndsItsContactsInTheNextStep) {
   const BodyId body = bodyOf(space, other);
   listAll(space);
   space.step(kTick<S>);
-  space.remove(other);
+  space.removeWithShapes(body);
   EXPECT_THAT(listed(space), ElementsAre("begin 0 1"));
   space.step(kTick<S>);
   EXPECT_THAT(listed(space), ElementsAre("end 0 1"));
