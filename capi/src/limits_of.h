@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <samestep/space_codec.h>
+#include <samestep/recording.h>
 
 #include "call.h"
 
 namespace samestep::c {
 
 /// Null gives the defaults.
-/// @throws ValueOutOfRange
-WorldLimits toLimits(const samestep_limits* limits);
+/// @throws Refusal, ValueOutOfRange
+RecordingLimits toLimits(const samestep_limits* limits);
 
 }  // namespace samestep::c

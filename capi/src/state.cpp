@@ -60,10 +60,20 @@ std::span<const std::uint8_t> bytesOf(const std::uint8_t* bytes, std::size_t siz
 
 }  // namespace
 
-WorldLimits toLimits(const samestep_limits* limits) {
-  if (limits == nullptr) return {};
-  require<Fault::ValueOutOfRange>(limits->pairs <= kMostPairs, "Pairs are at most 2^28.");
-  return {limits->bodies, limits->shapes, limits->pairs, limits->handlers};
+RecordingLimits toLimits(const samestep_limits* from) {
+  if (from == nullptr) return {};
+  current(from);
+  require<Fault::ValueOutOfRange>(from->pairs <= kMostPairs, "Pairs are at most 2^28.");
+  RecordingLimits limits;
+  limits.bodies = from->bodies;
+  limits.shapes = from->shapes;
+  limits.pairs = from->pairs;
+  limits.handlers = from->handlers;
+  limits.iterations = from->iterations;
+  limits.substeps = from->substeps;
+  limits.commandsPerTick = from->commands_per_tick;
+  limits.bytes = from->bytes;
+  return limits;
 }
 
 }  // namespace samestep::c
@@ -117,8 +127,18 @@ samestep_status samestep_slot_get_bytes(const samestep_slot* slot, uint64_t* byt
 }
 
 void samestep_limits_init(samestep_limits* limits) {
-  const samestep::WorldLimits defaults;
-  if (limits != nullptr) *limits = {defaults.bodies, defaults.shapes, defaults.pairs, defaults.handlers};
+  if (limits == nullptr) return;
+  const samestep::RecordingLimits defaults;
+  *limits = {};
+  limits->version = SAMESTEP_C_VERSION;
+  limits->bodies = defaults.bodies;
+  limits->shapes = defaults.shapes;
+  limits->pairs = defaults.pairs;
+  limits->handlers = defaults.handlers;
+  limits->iterations = defaults.iterations;
+  limits->substeps = defaults.substeps;
+  limits->commands_per_tick = defaults.commandsPerTick;
+  limits->bytes = defaults.bytes;
 }
 
 samestep_status samestep_world_write_snapshot(const samestep_world* world, uint8_t* bytes, size_t capacity,

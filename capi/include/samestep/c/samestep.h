@@ -854,15 +854,20 @@ typedef struct samestep_snapshot_info {
   uint64_t size; /* Of the whole snapshot, bytes. */
 } samestep_snapshot_info;
 
-/* How large a world from outside may be: indices of bodies and shapes, pairs, handlers. */
+/* How large a world or a recording from outside may be. */
 typedef struct samestep_limits {
-  uint32_t bodies;
-  uint32_t shapes;
-  uint32_t pairs;
-  uint32_t handlers;
+  uint32_t version;
+  uint32_t bodies;            /* Indices of bodies; 2^16 at first. */
+  uint32_t shapes;            /* Indices of shapes; 2^16 at first. */
+  uint32_t pairs;             /* Pairs of shapes near each other; 2^18 at first. */
+  uint32_t handlers;          /* Bindings of handlers; 2^12 at first. */
+  uint32_t iterations;        /* Iterations of sequential impulses; 1000 at first. */
+  uint32_t substeps;          /* Substeps of the soft step; 100 at first. */
+  uint32_t commands_per_tick; /* Of a recording, between two steps; 2^16 at first. */
+  uint64_t bytes;             /* Of a whole recording; 2^30 at first. */
 } samestep_limits;
 
-/* Sets the limits to 2^16 bodies and shapes, 2^18 pairs and 2^12 handlers. Null does nothing. */
+/* Sets all fields to their defaults. Null does nothing. */
 SAMESTEP_C_API void samestep_limits_init(samestep_limits* limits);
 
 /* Writes the world as bytes that every platform reads. *size is what it takes: with a null `bytes` and
