@@ -14,10 +14,10 @@
 
 /// A recording being made.
 struct samestep_recorder {
-  explicit samestep_recorder(samestep_world& of) : world(of) { ++world.recorders; }
+  explicit samestep_recorder(samestep_world& of) : world(of) { ++world.users; }
   samestep_recorder(const samestep_recorder&) = delete;
   samestep_recorder& operator=(const samestep_recorder&) = delete;
-  virtual ~samestep_recorder() { --world.recorders; }
+  virtual ~samestep_recorder() { --world.users; }
   samestep_world& world;
 };
 

@@ -27,7 +27,7 @@ constexpr Named kOwn[] = {
     {SAMESTEP_WRONG_SCALAR, "WRONG_SCALAR", "The two do not compute with the same scalar."},
     {SAMESTEP_SCALAR_NOT_BUILT, "SCALAR_NOT_BUILT", "This build lacks the scalar."},
     {SAMESTEP_OTHER_REVISION, "OTHER_REVISION", "The bytes are of another revision of the simulation."},
-    {SAMESTEP_IN_USE, "IN_USE", "The world is in use: by a recorder, or by the library."},
+    {SAMESTEP_IN_USE, "IN_USE", "The world is in use: by a recorder, a session or the library."},
     {SAMESTEP_UNKNOWN_VALUE, "UNKNOWN_VALUE", "A number names nothing of what it is to name."},
     {SAMESTEP_INTERNAL, "INTERNAL", "Something went wrong within the library."},
 };

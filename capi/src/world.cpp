@@ -82,7 +82,7 @@ samestep_status samestep_world_create(const samestep_world_def* def, samestep_wo
 samestep_status samestep_world_destroy(samestep_world* world) {
   if (world == nullptr) return SAMESTEP_OK;
   const samestep_status status = call(world, [&](auto& of) {
-    requireOr(of.destroyable && of.recorders == 0, SAMESTEP_IN_USE);
+    requireOr(of.destroyable && of.users == 0, SAMESTEP_IN_USE);
     samestep::require<samestep::Fault::SpaceLocked>(!of.space.isLocked() && of.callbacks == 0);
   });
   if (status == SAMESTEP_OK) delete world;

@@ -21,7 +21,8 @@ struct samestep_world {
   const samestep::ScalarKind scalar;
   /// Of the caller: false for one that lives for a replay.
   bool destroyable = true;
-  std::int32_t recorders = 0;
+  /// Recorders and sessions, which must end before it.
+  std::int32_t users = 0;
   /// Functions of the caller's that are under way while the Space is not locked.
   std::int32_t callbacks = 0;
   samestep_failure failure = nullptr;

@@ -9,6 +9,7 @@ int main(void) {
   test_contacts();
   test_state();
   test_recording();
+  test_session();
   test_golden();
   printf("%d failures\n", failures());
   return failures() == 0 ? 0 : 1;

@@ -27,6 +27,7 @@ void test_errors(void);
 void test_contacts(void);
 void test_state(void);
 void test_recording(void);
+void test_session(void);
 void test_golden(void);
 
 #endif

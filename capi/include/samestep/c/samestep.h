@@ -70,7 +70,7 @@ enum {
   SAMESTEP_WRONG_SCALAR = 5,     /* Two objects that must compute with the same scalar do not. */
   SAMESTEP_SCALAR_NOT_BUILT = 6, /* This build of the library lacks the scalar. */
   SAMESTEP_OTHER_REVISION = 7,   /* Bytes of another revision of the simulation. */
-  SAMESTEP_IN_USE = 8, /* A world that a recorder still records, or that is not the caller's to destroy. */
+  SAMESTEP_IN_USE = 8, /* A world that a recorder or session still uses, or not the caller's to destroy. */
   SAMESTEP_UNKNOWN_VALUE = 9, /* A number that names no kind, type, solver, phase or the like. */
   SAMESTEP_INTERNAL = 10,     /* What should not happen; the message tells more. */
   /* Faults of the engine; those that no call of this interface meets are listed as well. */
@@ -230,8 +230,8 @@ SAMESTEP_C_API void samestep_world_def_init(samestep_world_def* def);
  * SAMESTEP_SCALAR_NOT_BUILT, SAMESTEP_UNKNOWN_VALUE. */
 SAMESTEP_C_API samestep_status samestep_world_create(const samestep_world_def* def, samestep_world** world);
 /* Ends a world; null does nothing. SAMESTEP_SPACE_LOCKED from within a step or a function that the world
- * calls; SAMESTEP_IN_USE while a recorder records it, and for a world that a callback of samestep_verify was
- * given. */
+ * calls; SAMESTEP_IN_USE while a recorder or session uses it, and for a world that a callback of
+ * samestep_verify was given. */
 SAMESTEP_C_API samestep_status samestep_world_destroy(samestep_world* world);
 
 /* The sentence that tells why the last refused call for this world was refused, or with null the last one of
@@ -1020,6 +1020,170 @@ SAMESTEP_C_API samestep_status samestep_verify(const uint8_t* bytes, size_t size
                                                const samestep_wiring* wiring,
                                                const samestep_verify_options* options,
                                                samestep_verify_result* result);
+
+/* ---- Sessions ---- */
+
+/* A networked match of 2 to 16 players without a host: each peer steps its own world, and only inputs travel.
+ * A session predicts what others do and takes steps back where it was wrong; docs/lockstep.md tells how. */
+typedef struct samestep_session samestep_session;
+
+/* Seats of a match are 0 to 15. */
+enum { SAMESTEP_MAX_PLAYERS = 16 };
+
+/* What one player does in one tick. */
+typedef struct samestep_player_input {
+  const uint8_t* held;     /* What is held, as buttons: predicted while the true input is on its way. */
+  const uint8_t* commands; /* What happens once: never predicted, lost or applied twice. */
+  uint32_t held_size;
+  uint32_t command_size;
+  int32_t present; /* 0 before the player has joined, and after it has left or was dropped. */
+  int32_t reserved;
+} samestep_player_input;
+
+/* Does to the world what the players, by seat, do in a tick, before its step. It goes by the world, the
+ * game's own state and the inputs alone, and does not ask what was predicted: it may be called again for a
+ * tick. */
+typedef void (*samestep_apply_inputs)(samestep_world* world, uint32_t tick,
+                                      const samestep_player_input* players, uint32_t count, void* data);
+/* Sends a datagram of at most 1200 bytes to a peer; does not wait. */
+typedef void (*samestep_send)(uint64_t to, const uint8_t* bytes, size_t size, void* data);
+/* Writes the next datagram that has arrived and its sender; does not wait. Answers its length, or 0 if there
+ * is none; one longer than `room` is dropped. */
+typedef uint32_t (*samestep_receive)(uint64_t* from, uint8_t* into, size_t room, void* data);
+
+/* What a game keeps beside its world, as scores and timers: all three functions, or none. */
+typedef struct samestep_own_state {
+  void (*save)(uint32_t slot, void* data); /* Keeps it under a number below 18. */
+  void (*load)(uint32_t slot, void* data); /* Brings back what was kept last under this number. */
+  uint64_t (*hash)(void* data);            /* Differs where two states differ; the same on every machine. */
+  void* data;
+} samestep_own_state;
+
+/* What a session is to be. Times are in microseconds. */
+typedef struct samestep_session_def {
+  uint32_t version;
+  uint32_t match;             /* Tells this match from others that the same peers play. */
+  uint32_t players;           /* 2 to 16; 2 at first. */
+  uint32_t local_seat;        /* Which of them is ours. */
+  uint64_t addresses[16];     /* Where the transport finds each seat: any numbers of its own. */
+  uint32_t rate;              /* Steps per second; 60 at first. */
+  uint32_t window;            /* Steps made ahead of the last certain one, 0 (lockstep) to 16; 8 at first. */
+  uint32_t input_delay;       /* Ticks between an input and the step that uses it, 0 to 16; 2 at first. */
+  uint32_t run_ahead;         /* Steps that are shown before they are made, 0 to 4; 0 at first. */
+  uint32_t sparse_saving;     /* 1: the last certain step alone is saved, for worlds whose saves cost much. */
+  uint32_t predicts_nothing;  /* 1: who was not heard yet is taken to hold nothing, in place of the same. */
+  uint32_t max_held_bytes;    /* 1 to 64, the same for all peers; 8 at first. */
+  uint32_t max_command_bytes; /* 0 to 128, the same for all peers; 32 at first. */
+  uint32_t hash_interval;     /* Hashes are compared after so many steps, 0 never; 60 at first. */
+  uint32_t resend_after;      /* 50000 at first. */
+  uint32_t interrupted_after; /* 500000 at first. */
+  uint32_t drop_after;        /* A silent peer is dropped; 3000000 at first. */
+  uint32_t end_after;         /* A match without most of its players ends; 15000000 at first. */
+  uint32_t reserved;          /* 0 */
+  uint64_t content;           /* Of the game's own data, as a hash: peers compare it before they start. */
+  samestep_apply_inputs apply_inputs;
+  void* data;             /* Given to apply_inputs. */
+  samestep_own_state own; /* Null functions: there is none. */
+  samestep_send send;
+  samestep_receive receive;
+  void* transport_data; /* Given to both. */
+} samestep_session_def;
+
+/* Sets all fields to their defaults; what is called must be set. Null does nothing. */
+SAMESTEP_C_API void samestep_session_def_init(samestep_session_def* def);
+/* Begins a match in which the world is stepped by the session alone. Peers compare revision, fingerprint, the
+ * world as it is now, its rate and `content` before they start. The world cannot be destroyed before the
+ * session. SAMESTEP_WRONG_VERSION, SAMESTEP_NULL_ARGUMENT for a function, SAMESTEP_VALUE_OUT_OF_RANGE. */
+SAMESTEP_C_API samestep_status samestep_session_create(samestep_world* world, const samestep_session_def* def,
+                                                       samestep_session** session);
+/* Ends a session on this side, at once; null does nothing. Messages of its calls are the world's. */
+SAMESTEP_C_API void samestep_session_destroy(samestep_session* session);
+
+/* What came of a frame. */
+enum {
+  SAMESTEP_FRAME_ADVANCED = 0, /* A step was made. */
+  SAMESTEP_FRAME_WAITING = 1,  /* For the inputs of others: show the last one again. */
+  SAMESTEP_FRAME_PAUSED = 2,   /* A player has paused. */
+  SAMESTEP_FRAME_IDLE = 3      /* The match has not begun, or has ended. */
+};
+/* Takes in what has arrived, takes back what was predicted wrongly, and makes a step if it may. `now` is in
+ * microseconds since any moment and never goes back; `held` is what the local player holds. `frame` may be
+ * null. SAMESTEP_VALUE_OUT_OF_RANGE for more than max_held_bytes, and as samestep_world_step. */
+SAMESTEP_C_API samestep_status samestep_session_frame(samestep_session* session, uint64_t now,
+                                                      const uint8_t* held, size_t size, int32_t* frame);
+/* Only talks to the others: between two frames, and while none are made. */
+SAMESTEP_C_API samestep_status samestep_session_poll(samestep_session* session, uint64_t now);
+/* Queues a command of the local player for the next input with room; *queued is 0 where too many wait.
+ * SAMESTEP_VALUE_OUT_OF_RANGE for one longer than max_command_bytes. */
+SAMESTEP_C_API samestep_status samestep_session_command(samestep_session* session, const uint8_t* bytes,
+                                                        size_t size, int32_t* queued);
+/* Leaves the match with the next input; poll until its state is SAMESTEP_SESSION_ENDED. */
+SAMESTEP_C_API samestep_status samestep_session_leave(samestep_session* session);
+/* While a player has paused, 1, no inputs are made: all wait until 0. */
+SAMESTEP_C_API samestep_status samestep_session_pause(samestep_session* session, int32_t paused);
+/* From the next frame on, as in samestep_session_def; it may differ between peers.
+ * SAMESTEP_VALUE_OUT_OF_RANGE. */
+SAMESTEP_C_API samestep_status samestep_session_set_input_delay(samestep_session* session, uint32_t ticks);
+/* The same for the steps made ahead of the last certain one. */
+SAMESTEP_C_API samestep_status samestep_session_set_window(samestep_session* session, uint32_t ticks);
+
+/* How a session stands. */
+enum {
+  SAMESTEP_SESSION_CONNECTING = 0, /* Some peers were not heard yet. */
+  SAMESTEP_SESSION_RUNNING = 1,    /* The match is played. */
+  SAMESTEP_SESSION_ENDED = 2       /* For good. */
+};
+
+/* All that a game may want to know of a session. */
+typedef struct samestep_session_state {
+  int32_t state;         /* SAMESTEP_SESSION_CONNECTING and so on. */
+  int32_t end_reason;    /* 0 none, 1 left, 2 refused, 3 dropped, 4 minority, 5 diverged: docs/lockstep.md. */
+  uint32_t tick;         /* Steps made. */
+  uint32_t confirmed;    /* Steps whose inputs are all known; it may be ahead of the tick. */
+  uint32_t present;      /* Bit by seat: who plays now. */
+  uint32_t frame_length; /* How long a frame should last, in thousandths of the usual, 950 to 1050. */
+  uint64_t steps;        /* Made, repeated ones included. */
+  uint64_t rollbacks;
+  uint64_t saves;
+  uint64_t waited; /* Frames without a step. */
+  uint64_t sent_bytes;
+  uint64_t sent_packets;
+  uint64_t bad_packets; /* Dropped: malformed, of another match, of nobody known. */
+  uint64_t lost_events; /* Not fetched in time. */
+  uint32_t deepest;     /* Rollback, in steps. */
+  uint32_t reserved;
+} samestep_session_state;
+/* How the session stands now. */
+SAMESTEP_C_API samestep_status samestep_session_get_state(samestep_session* session,
+                                                          samestep_session_state* state);
+
+/* Kinds of samestep_session_event. */
+enum {
+  SAMESTEP_SESSION_STARTED = 0,     /* All have been heard. */
+  SAMESTEP_SESSION_REFUSED = 1,     /* `seat` has another build, game or settings. */
+  SAMESTEP_SESSION_INTERRUPTED = 2, /* `seat` is silent. */
+  SAMESTEP_SESSION_RESUMED = 3,     /* `seat` is heard again. */
+  SAMESTEP_SESSION_PAUSED = 4,      /* `seat` has paused. */
+  SAMESTEP_SESSION_UNPAUSED = 5,    /* `seat` goes on. */
+  SAMESTEP_SESSION_LEFT = 6,        /* `seat` has its last input at the tick before `tick`. */
+  SAMESTEP_SESSION_DROPPED = 7,     /* The same, agreed by the others. */
+  SAMESTEP_SESSION_DESYNC = 8, /* States after `tick` steps differ: `local_hash` here, `remote_hash` there. */
+  SAMESTEP_SESSION_OVER = 9    /* The match has ended here. */
+};
+/* Something that the game may want to show. */
+typedef struct samestep_session_event {
+  int32_t kind;
+  uint32_t seat; /* 255: none. */
+  uint32_t
+      detail; /* Of a refusal: 1 protocol, 2 players, 3 settings, 4 revision, 5 fingerprint, 6 content. */
+  uint32_t tick;
+  uint64_t local_hash;
+  uint64_t remote_hash;
+} samestep_session_event;
+/* Takes the oldest event, of which 64 are kept; *taken is 0 where there is none, and `event` stays as it is.
+ */
+SAMESTEP_C_API samestep_status samestep_session_next_event(samestep_session* session,
+                                                           samestep_session_event* event, int32_t* taken);
 
 #ifdef __cplusplus
 }
