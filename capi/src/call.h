@@ -14,7 +14,7 @@ struct Refusal {
 class InputRefused : public Error {
  public:
   explicit InputRefused(samestep_status status)
-      : Error(Fault::ValueOutOfRange, samestep_status_message(status)), status_(status) {}
+      : Error(Fault::ValueOutOfRange, {samestep_status_message(status)}), status_(status) {}
   samestep_status status() const { return status_; }
 
  private:
@@ -48,6 +48,7 @@ const char* lastMessageOfThread() noexcept;
 template <class Action>
 samestep_status callFree(Action&& action) noexcept {
   try {
+    const FailuresAreCaught failuresAreCaught;
     action();
     return SAMESTEP_OK;
   } catch (...) {
@@ -69,6 +70,7 @@ auto& as(World& world) {
 template <class World, class Action>
 samestep_status call(World* world, Action&& action) noexcept {
   try {
+    const FailuresAreCaught failuresAreCaught;
     at(world);
 #ifndef SAMESTEP_FIXED_ONLY
     if (world->scalar == ScalarKind::float64) {

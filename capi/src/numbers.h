@@ -100,16 +100,12 @@ S fromRaw(std::int64_t raw) {
 
 template <class Tag>
 std::uint64_t toC(const Id<Tag>& id) {
-  return id.valid() ? std::uint64_t{id.generation} << 32 | id.index : 0;
+  return id.valid() ? id.bits() : 0;
 }
 /// 0 gives the id that names nothing.
 template <class AnyId>
 AnyId fromC(std::uint64_t id) {
-  AnyId made;
-  if (id == 0) return made;
-  made.index = static_cast<std::uint32_t>(id);
-  made.generation = static_cast<std::uint32_t>(id >> 32);
-  return made;
+  return id == 0 ? AnyId() : AnyId::fromBits(id);
 }
 
 inline ShapeFilter toFilter(const samestep_filter* filter) {

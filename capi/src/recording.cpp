@@ -34,7 +34,7 @@ Spawn<S> toSpawn(const samestep_command& from) {
   spawn.shapes.reserve(std::min(from.shape_count, 256u));
   for (std::uint32_t i = 0; i < from.shape_count; ++i) {
     Shape<S> shape = toShape<S>({}, from.shapes[i]);
-    if (from.shapes[i].id != 0) shape.attach(fromC<ShapeId>(from.shapes[i].id), 0);
+    if (from.shapes[i].id != 0) shape.attach(fromC<ShapeId>(from.shapes[i].id));
     spawn.shapes.push_back(std::move(shape));
   }
   return spawn;
@@ -158,6 +158,11 @@ bool progressOf(std::uint64_t done, std::uint64_t total, void* data) {
   return options.progress(done, total, options.progress_data) != 0;
 }
 
+bool interruptOf(void* data) {
+  const auto& options = *static_cast<const samestep_verify_options*>(data);
+  return options.interrupt(options.interrupt_data) != 0;
+}
+
 samestep_verify_result resultOf(const VerifyResult& from) {
   samestep_verify_result result{};
   result.matches = from.matches ? 1 : 0;
@@ -267,6 +272,9 @@ samestep_status samestep_verify(const uint8_t* bytes, size_t size, const sameste
     if (options != nullptr && options->progress != nullptr) {
       chosen.progress = progressOf;
       chosen.data = const_cast<samestep_verify_options*>(options);
+    }
+    if (options != nullptr && options->interrupt != nullptr) {
+      chosen.interrupt = {interruptOf, const_cast<samestep_verify_options*>(options)};
     }
     const std::span<const uint8_t> recording(bytes, size);
     const auto scalar = static_cast<int32_t>(samestep::recordingInfo(recording).scalar);

@@ -51,6 +51,7 @@ SessionSettings toSettings(const samestep_session_def& from) {
   settings.interruptedAfter = from.interrupted_after;
   settings.dropAfter = from.drop_after;
   settings.endAfter = from.end_after;
+  settings.goneAfter = from.gone_after;
   return settings;
 }
 
@@ -155,6 +156,7 @@ void samestep_session_def_init(samestep_session_def* def) {
   def->interrupted_after = defaults.interruptedAfter;
   def->drop_after = defaults.dropAfter;
   def->end_after = defaults.endAfter;
+  def->gone_after = defaults.goneAfter;
 }
 
 samestep_status samestep_session_create(samestep_world* world, const samestep_session_def* def,

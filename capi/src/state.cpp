@@ -73,6 +73,7 @@ RecordingLimits toLimits(const samestep_limits* from) {
   limits.substeps = from->substeps;
   limits.commandsPerTick = from->commands_per_tick;
   limits.bytes = from->bytes;
+  limits.work = from->work;
   return limits;
 }
 
@@ -139,6 +140,7 @@ void samestep_limits_init(samestep_limits* limits) {
   limits->substeps = defaults.substeps;
   limits->commands_per_tick = defaults.commandsPerTick;
   limits->bytes = defaults.bytes;
+  limits->work = defaults.work;
 }
 
 samestep_status samestep_world_write_snapshot(const samestep_world* world, uint8_t* bytes, size_t capacity,

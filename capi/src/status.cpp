@@ -34,7 +34,7 @@ constexpr Named kOwn[] = {
 
 /// The statuses of faults are these plus the fault.
 constexpr samestep_status kFirstFault = SAMESTEP_ATTACHED_BODY;
-constexpr const char* kFaults[] = {
+constexpr const char* kFaultNames[] = {
     "ATTACHED_BODY",
     "ATTACHED_SHAPE",
     "ATTACHED_STATIC_BODY",
@@ -88,8 +88,10 @@ constexpr const char* kFaults[] = {
     "ILLEGAL_ID",
     "UNSOUND_ARITHMETIC",
     "TOO_MANY_PAIRS",
+    "INTERRUPTED",
+    "LEFT_MIDWAY",
 };
-constexpr samestep_status kFaultCount = std::size(kFaults);
+constexpr samestep_status kFaultCount = std::size(kFaultNames);
 
 constexpr bool isStatus(Fault fault, samestep_status status) {
   return kFirstFault + static_cast<samestep_status>(fault) == status;
@@ -103,7 +105,9 @@ static_assert(isStatus(Fault::ValueOutOfRange, SAMESTEP_VALUE_OUT_OF_RANGE));
 static_assert(isStatus(Fault::BodyHasShapes, SAMESTEP_BODY_HAS_SHAPES));
 static_assert(isStatus(Fault::MalformedBytes, SAMESTEP_MALFORMED_BYTES));
 static_assert(isStatus(Fault::TooManyPairs, SAMESTEP_TOO_MANY_PAIRS));
-static_assert(kFaultCount == SAMESTEP_TOO_MANY_PAIRS - kFirstFault + 1);
+static_assert(isStatus(Fault::LeftMidway, SAMESTEP_LEFT_MIDWAY));
+// Each fault has its name here and its number in the header.
+static_assert(std::size(kFaultNames) == kFaults);
 
 bool isFault(samestep_status status) { return status >= kFirstFault && status - kFirstFault < kFaultCount; }
 
@@ -158,7 +162,7 @@ extern "C" {
 
 const char* samestep_status_name(samestep_status status) {
   using namespace samestep::c;
-  if (isFault(status)) return kFaults[status - kFirstFault];
+  if (isFault(status)) return kFaultNames[status - kFirstFault];
   for (const Named& own : kOwn) {
     if (own.status == status) return own.name;
   }

@@ -38,6 +38,11 @@ void logOf(Remark, const char* text, void* context) {
   world.log(text, world.logData);
 }
 
+bool isWanted(void* data) {
+  const auto& world = *static_cast<const samestep_world*>(data);
+  return world.interrupt(world.interruptData) != 0;
+}
+
 template <Scalar S>
 void step(WorldOf<S>& world, S seconds) {
   world.space.step(seconds);
@@ -122,6 +127,29 @@ samestep_status samestep_world_get_tick(const samestep_world* world, uint64_t* t
 
 samestep_status samestep_world_is_locked(const samestep_world* world, int32_t* locked) {
   return call(world, [&](auto& of) { at(locked) = of.space.isLocked() ? 1 : 0; });
+}
+
+samestep_status samestep_world_is_usable(const samestep_world* world, int32_t* usable) {
+  return call(world, [&](auto& of) { at(usable) = of.space.isUsable() ? 1 : 0; });
+}
+
+samestep_status samestep_world_set_interrupt(samestep_world* world, samestep_interrupt interrupt,
+                                             void* data) {
+  return call(world, [&](auto& of) {
+    of.interrupt = interrupt;
+    of.interruptData = data;
+    samestep::Interrupt asked;
+    if (interrupt != nullptr) asked = {isWanted, static_cast<samestep_world*>(&of)};
+    of.space.setInterrupt(asked);
+  });
+}
+
+samestep_status samestep_world_get_work(const samestep_world* world, uint64_t* work) {
+  return call(world, [&](auto& of) { at(work) = of.space.work(); });
+}
+
+samestep_status samestep_world_set_max_work(samestep_world* world, uint64_t work) {
+  return call(world, [&](auto& of) { of.space.setMaxWork(work); });
 }
 
 samestep_status samestep_world_get_body_count(const samestep_world* world, uint32_t* count) {

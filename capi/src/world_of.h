@@ -27,6 +27,8 @@ struct samestep_world {
   std::int32_t callbacks = 0;
   samestep_failure failure = nullptr;
   void* failureData = nullptr;
+  samestep_interrupt interrupt = nullptr;
+  void* interruptData = nullptr;
   samestep_log log = nullptr;
   void* logData = nullptr;
   /// A sentence is copied here, for an exception takes its own with it.

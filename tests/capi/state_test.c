@@ -90,6 +90,36 @@ static void test_snapshots(int32_t scalar) {
   check_status(samestep_world_destroy(copy), SAMESTEP_OK, "destroy", __LINE__);
 }
 
+static int32_t at_once(void* data) {
+  ++*(int*)data;
+  return 1;
+}
+
+static void test_interrupts(int32_t scalar) {
+  samestep_world* world = make_pile(scalar);
+  samestep_slot* slot = NULL;
+  check_status(samestep_slot_create(scalar, &slot), SAMESTEP_OK, "slot", __LINE__);
+  check_status(samestep_world_save(world, slot), SAMESTEP_OK, "save", __LINE__);
+  int asked = 0;
+  int32_t usable = 1;
+  uint64_t hash = 0;
+  check_status(samestep_world_set_interrupt(world, at_once, &asked), SAMESTEP_OK, "interrupt", __LINE__);
+  check_status(samestep_world_step_at(world, 60), SAMESTEP_INTERRUPTED, "step", __LINE__);
+  check(asked > 0, "it is asked", __LINE__);
+  check_status(samestep_world_is_usable(world, &usable), SAMESTEP_OK, "usable", __LINE__);
+  check(usable == 0, "the world is left midway", __LINE__);
+  check_status(samestep_world_get_hash(world, &hash), SAMESTEP_LEFT_MIDWAY, "hash", __LINE__);
+  check_status(samestep_world_set_interrupt(world, NULL, NULL), SAMESTEP_OK, "interrupt", __LINE__);
+  check_status(samestep_world_restore(world, slot), SAMESTEP_OK, "restore", __LINE__);
+  steps(world, 3);
+  uint64_t work = 0;
+  check_status(samestep_world_get_work(world, &work), SAMESTEP_OK, "work", __LINE__);
+  check_status(samestep_world_set_max_work(world, work), SAMESTEP_OK, "work", __LINE__);
+  check_status(samestep_world_step_at(world, 60), SAMESTEP_INTERRUPTED, "step", __LINE__);
+  samestep_slot_destroy(slot);
+  check_status(samestep_world_destroy(world), SAMESTEP_OK, "destroy", __LINE__);
+}
+
 static void test_difference(int32_t scalar) {
   samestep_world* a = make_pile(scalar);
   samestep_world* b = make_pile(scalar);
@@ -241,6 +271,7 @@ void test_state(void) {
   for (int i = 0; i < count; ++i) {
     test_slots(built[i]);
     test_snapshots(built[i]);
+    test_interrupts(built[i]);
     test_difference(built[i]);
     test_bodies(built[i]);
     test_shapes(built[i]);

@@ -16,7 +16,7 @@ std::uint64_t sortKey(ShapeId a, ShapeId b) { return std::uint64_t{a.index} << 3
 template <Scalar S>
 ContactEvent eventOf(const WorldState<S>& world, ShapeId a, ShapeId b) {
   const Shape<S>&shapeA = world.shapes.valueAt(a.index), &shapeB = world.shapes.valueAt(b.index);
-  ContactEvent event{a, b, shapeA.body(), shapeB.body()};
+  ContactEvent event{shapeA.id(), shapeB.id(), shapeA.body(), shapeB.body()};
   event.sensor = shapeA.sensor() || shapeB.sensor() ? 1 : 0;
   return event;
 }
@@ -108,7 +108,7 @@ void ListContacts<S>::listImpact(Context& context, Pair<S>& pair) {
   const Body<S>&a = world.bodies.valueAt(shapeA.body().index), &b = world.bodies.valueAt(shapeB.body().index);
   const ContactLists<S>& lists = context.events.contacts;
   const Vector<S> normal = worldNormal(pair, a);
-  ImpactEvent<S> event{pair.a, pair.b, shapeA.body(), shapeB.body()};
+  ImpactEvent<S> event{shapeA.id(), shapeB.id(), shapeA.body(), shapeB.body()};
   Scaled<S> push{};
   for (int i = 0; i < pair.count; ++i) {
     const ContactArms<S> arms = contactArms(pair.contacts[i], normal, a, b);

@@ -127,7 +127,9 @@ enum {
   SAMESTEP_KERNEL_UNAVAILABLE = 149, /* Instructions that this processor lacks. */
   SAMESTEP_ILLEGAL_ID = 150,         /* An id that its slot cannot have any more. */
   SAMESTEP_UNSOUND_ARITHMETIC = 151, /* The processor is in a mode in which double gives other results. */
-  SAMESTEP_TOO_MANY_PAIRS = 152      /* More shapes near each other than the world may hold as pairs. */
+  SAMESTEP_TOO_MANY_PAIRS = 152,     /* More shapes near each other than the world may hold as pairs. */
+  SAMESTEP_INTERRUPTED = 153,        /* A call that was to end; see samestep_world_set_interrupt. */
+  SAMESTEP_LEFT_MIDWAY = 154 /* A world in which a change ended midway; see samestep_world_is_usable. */
 };
 
 /* The name of a status as in this header, without SAMESTEP_: "BODY_NOT_FOUND"; "UNKNOWN" for any other
@@ -263,6 +265,22 @@ SAMESTEP_C_API samestep_status samestep_world_step_at(samestep_world* world, uin
 SAMESTEP_C_API samestep_status samestep_world_get_tick(const samestep_world* world, uint64_t* tick);
 /* Whether a step, query or visit is under way: 1 or 0. */
 SAMESTEP_C_API samestep_status samestep_world_is_locked(const samestep_world* world, int32_t* locked);
+
+/* Whether the world is whole: 1 or 0. A change that ends midway, by an interrupt or for want of memory,
+ * leaves it unusable: what reads or changes it answers SAMESTEP_LEFT_MIDWAY until a whole world has been
+ * restored or read. */
+SAMESTEP_C_API samestep_status samestep_world_is_usable(const samestep_world* world, int32_t* usable);
+/* Asked now and then, also on a worker's thread, whether a long call shall end: 1 ends it with
+ * SAMESTEP_INTERRUPTED, and leaves a world that was being stepped midway. It calls nothing for the world. */
+typedef int32_t (*samestep_interrupt)(void* data);
+/* Sets who is asked, or null for nobody. */
+SAMESTEP_C_API samestep_status samestep_world_set_interrupt(samestep_world* world,
+                                                            samestep_interrupt interrupt, void* data);
+/* Work done so far, in units that follow from the calls alone, whoever computes. */
+SAMESTEP_C_API samestep_status samestep_world_get_work(const samestep_world* world, uint64_t* work);
+/* Calls that go beyond so much work end as if interrupted, in the same place on every machine. Without limit
+ * at first. */
+SAMESTEP_C_API samestep_status samestep_world_set_max_work(samestep_world* world, uint64_t work);
 
 /* How many bodies there are, the static one included. */
 SAMESTEP_C_API samestep_status samestep_world_get_body_count(const samestep_world* world, uint32_t* count);
@@ -698,7 +716,8 @@ typedef struct samestep_handler {
  * brought in. SAMESTEP_SPACE_LOCKED, SAMESTEP_VALUE_OUT_OF_RANGE. */
 SAMESTEP_C_API samestep_status samestep_world_register_handler(samestep_world* world, uint32_t number,
                                                                const samestep_handler* handler);
-/* For shapes of these two types, A and B in this order. SAMESTEP_MISSING_CALLBACK, SAMESTEP_SPACE_LOCKED. */
+/* For shapes of these two types, A and B in this order. Type 0 as one of them stands for every type that no
+ * handler names together with the other. SAMESTEP_MISSING_CALLBACK, SAMESTEP_SPACE_LOCKED. */
 SAMESTEP_C_API samestep_status samestep_world_add_handler(samestep_world* world, uint32_t type_a,
                                                           uint32_t type_b, uint32_t number);
 /* For shapes of this type, as A, with any other, where no handler of the pair takes over. As above. */
@@ -865,6 +884,7 @@ typedef struct samestep_limits {
   uint32_t substeps;          /* Substeps of the soft step; 100 at first. */
   uint32_t commands_per_tick; /* Of a recording, between two steps; 2^16 at first. */
   uint64_t bytes;             /* Of a whole recording; 2^30 at first. */
+  uint64_t work; /* Of a whole replay, as samestep_world_get_work counts; without limit at first. */
 } samestep_limits;
 
 /* Sets all fields to their defaults. Null does nothing. */
@@ -996,12 +1016,14 @@ typedef struct samestep_verify_options {
   /* Called after each step; 0 stops. Null for none. */
   int32_t (*progress)(uint64_t done, uint64_t total, void* data);
   void* progress_data;
+  samestep_interrupt interrupt; /* Asked far more often: 1 stops. Null for none. */
+  void* interrupt_data;
 } samestep_verify_options;
 
 /* What replaying a recording showed. */
 typedef struct samestep_verify_result {
   int32_t matches;           /* 1 where all expectations and the hash of every step hold. */
-  int32_t stopped;           /* 1 where `progress` ended it. */
+  int32_t stopped;           /* 1 where `progress` or `interrupt` ended it. */
   uint64_t ticks;            /* Steps in the recording. */
   uint64_t first_wrong_tick; /* The first step after which the hash is another one; 0: before the first. */
   uint64_t recorded_hash;    /* After that step, or the last one. */
@@ -1079,7 +1101,7 @@ typedef struct samestep_session_def {
   uint32_t interrupted_after; /* 500000 at first. */
   uint32_t drop_after;        /* A silent peer is dropped; 3000000 at first. */
   uint32_t end_after;         /* A match without most of its players ends; 15000000 at first. */
-  uint32_t reserved;          /* 0 */
+  uint32_t gone_after;        /* When two leave at once, one waits so long for the other; 1000000 at first. */
   uint64_t content;           /* Of the game's own data, as a hash: peers compare it before they start. */
   samestep_apply_inputs apply_inputs;
   void* data;             /* Given to apply_inputs. */
