@@ -3,6 +3,8 @@
 #include <samestep/space_game.h>
 
 #include <algorithm>
+#include <cstring>
+#include <string>
 
 #include "base/require_ieee.h"
 #include "call.h"
@@ -23,6 +25,12 @@ struct samestep_session {
 
 namespace samestep::c {
 namespace {
+
+static_assert(static_cast<int>(SessionEvent::Kind::desync) == SAMESTEP_SESSION_DESYNC);
+static_assert(static_cast<int>(SessionEvent::Kind::ended) == SAMESTEP_SESSION_OVER);
+static_assert(static_cast<int>(SessionState::ended) == SAMESTEP_SESSION_ENDED);
+static_assert(static_cast<int>(Frame::idle) == SAMESTEP_FRAME_IDLE);
+static_assert(kSaveSlots + kKeepSlots == 22, "What samestep_own_state says.");
 
 /// A number of the caller's in a narrower type.
 /// @throws ValueOutOfRange where it does not fit
@@ -52,6 +60,7 @@ SessionSettings toSettings(const samestep_session_def& from) {
   settings.dropAfter = from.drop_after;
   settings.endAfter = from.end_after;
   settings.goneAfter = from.gone_after;
+  settings.pausedAtMost = from.paused_at_most;
   return settings;
 }
 
@@ -157,6 +166,7 @@ void samestep_session_def_init(samestep_session_def* def) {
   def->drop_after = defaults.dropAfter;
   def->end_after = defaults.endAfter;
   def->gone_after = defaults.goneAfter;
+  def->paused_at_most = defaults.pausedAtMost;
 }
 
 samestep_status samestep_session_create(samestep_world* world, const samestep_session_def* def,
@@ -220,6 +230,17 @@ samestep_status samestep_session_next_event(samestep_session* session, samestep_
     *taken = of.next(next) ? 1 : 0;
     if (*taken == 0) return;
     *event = {static_cast<int32_t>(next.kind), next.seat, next.detail, next.tick, next.local, next.remote};
+  });
+}
+
+samestep_status samestep_session_write_desync(samestep_session* session, char* text, size_t capacity,
+                                              size_t* size) {
+  return callSession(session, [&](samestep::Session& of) {
+    at(size);
+    const samestep::DesyncReport* report = of.desync();
+    const std::string line = report == nullptr ? std::string() : samestep::desyncText(*report);
+    giveSize(line.size() + 1, text, capacity, size);
+    if (text != nullptr) std::memcpy(text, line.c_str(), line.size() + 1);
   });
 }
 

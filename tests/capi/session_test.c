@@ -150,6 +150,11 @@ static void test_match(int32_t scalar) {
     play(&b, 1);
   }
   check(a.desyncs > 0 && b.desyncs > 0, "both hear of it", __LINE__);
+  char text[512];
+  size_t size = 0;
+  check_status(samestep_session_write_desync(a.session, text, sizeof text, &size), SAMESTEP_OK, "text",
+               __LINE__);
+  check(size > 1 && strlen(text) + 1 == size, "and say so", __LINE__);
   leave(&a);
   leave(&b);
 }

@@ -1075,7 +1075,7 @@ typedef uint32_t (*samestep_receive)(uint64_t* from, uint8_t* into, size_t room,
 
 /* What a game keeps beside its world, as scores and timers: all three functions, or none. */
 typedef struct samestep_own_state {
-  void (*save)(uint32_t slot, void* data); /* Keeps it under a number below 18. */
+  void (*save)(uint32_t slot, void* data); /* Keeps it under a number below 22. */
   void (*load)(uint32_t slot, void* data); /* Brings back what was kept last under this number. */
   uint64_t (*hash)(void* data);            /* Differs where two states differ; the same on every machine. */
   void* data;
@@ -1102,6 +1102,8 @@ typedef struct samestep_session_def {
   uint32_t drop_after;        /* A silent peer is dropped; 3000000 at first. */
   uint32_t end_after;         /* A match without most of its players ends; 15000000 at first. */
   uint32_t gone_after;        /* When two leave at once, one waits so long for the other; 1000000 at first. */
+  uint32_t paused_at_most;    /* A longer pause drops its peer; 300000000 at first. */
+  uint32_t reserved;          /* 0 */
   uint64_t content;           /* Of the game's own data, as a hash: peers compare it before they start. */
   samestep_apply_inputs apply_inputs;
   void* data;             /* Given to apply_inputs. */
@@ -1190,7 +1192,8 @@ enum {
   SAMESTEP_SESSION_LEFT = 6,        /* `seat` has its last input at the tick before `tick`. */
   SAMESTEP_SESSION_DROPPED = 7,     /* The same, agreed by the others. */
   SAMESTEP_SESSION_DESYNC = 8, /* States after `tick` steps differ: `local_hash` here, `remote_hash` there. */
-  SAMESTEP_SESSION_OVER = 9    /* The match has ended here. */
+  SAMESTEP_SESSION_LOCATED = 9, /* What differs has been found: samestep_session_write_desync. */
+  SAMESTEP_SESSION_OVER = 10    /* The match has ended here. */
 };
 /* Something that the game may want to show. */
 typedef struct samestep_session_event {
@@ -1206,6 +1209,11 @@ typedef struct samestep_session_event {
  */
 SAMESTEP_C_API samestep_status samestep_session_next_event(samestep_session* session,
                                                            samestep_session_event* event, int32_t* taken);
+
+/* What was found out about a desync, in a line; "" where there was none. *size is what the text takes with
+ * the 0 at its end, as in samestep_world_write_snapshot. */
+SAMESTEP_C_API samestep_status samestep_session_write_desync(samestep_session* session, char* text,
+                                                             size_t capacity, size_t* size);
 
 #ifdef __cplusplus
 }
