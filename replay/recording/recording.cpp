@@ -281,8 +281,7 @@ void RecordingReader<S>::scanSections(Scan& scan, bool mayBeCut) {
 
 /// @return whether there may be more
 template <Scalar S>
-bool RecordingReader<S>::scanSection(const RecordingSection& section, std::uint64_t chainBefore,
-                                     Scan& scan) {
+bool RecordingReader<S>::scanSection(const RecordingSection& section, std::uint64_t chainBefore, Scan& scan) {
   if (section.cut && section.kind != SectionKind::ticks) {
     if (keyframes_.empty()) failFormat(bytes_.size(), "cut short");
     usableEnd_ = section.at;
