@@ -163,6 +163,26 @@ int farthestVertex(const PlacedShape<S>& shape, const Vector<S>& n) {
   return best;
 }
 
+/// How far the moving shape is from the line of a face.
+template <Scalar S>
+S separationFrom(const SeamContact<S>& contact, int face) {
+  const PlacedShape<S>& moving = *contact.moving;
+  const Plane<S>& plane = contact.still->planes[face];
+  const int vertex = farthestVertex(moving, -plane.n);
+  return dot(moving.planes[vertex].v0 - plane.v0, plane.n) - (moving.radius + contact.still->radius);
+}
+
+/// Whether the moving shape is on the outer side of a face for the greater part: what is not comes from
+/// elsewhere.
+template <Scalar S>
+bool sticksOut(const SeamContact<S>& contact, int face) {
+  const PlacedShape<S>& moving = *contact.moving;
+  const Plane<S>& plane = contact.still->planes[face];
+  const Vector<S> farthest = moving.planes[farthestVertex(moving, plane.n)].v0;
+  const S outside = dot(farthest - plane.v0, plane.n) + (moving.radius - contact.still->radius);
+  return outside > max(-separationFrom(contact, face), S(0));
+}
+
 template <Scalar S>
 bool Seam<S>::cornerAllows(int& instead) const {
   const PlacedShape<S>& shape = *own_.still;
@@ -179,26 +199,13 @@ bool Seam<S>::cornerAllows(int& instead) const {
   if (allowed) return true;
   const int after = vertex + 1 < shape.count ? vertex + 1 : 0;
   const S first = dot(shape.planes[vertex].n, own_.normal), second = dot(shape.planes[after].n, own_.normal);
-  instead = max(first, second) < nearest - kSameWay<S> ? -1 : first > second ? vertex : after;
+  instead = -1;
+  if (max(first, second) < nearest - kSameWay<S>) return false;
+  // Of both ends of a segment's line the side that it came from.
+  const bool alike = abs(first - second) <= kSameWay<S>;
+  const bool takesFirst = alike ? separationFrom(own_, vertex) > separationFrom(own_, after) : first > second;
+  instead = takesFirst ? vertex : after;
   return false;
-}
-
-/// How far the moving shape is from the line of a face.
-template <Scalar S>
-S separationFrom(const SeamContact<S>& contact, int face) {
-  const PlacedShape<S>& moving = *contact.moving;
-  const Plane<S>& plane = contact.still->planes[face];
-  const int vertex = farthestVertex(moving, -plane.n);
-  return dot(moving.planes[vertex].v0 - plane.v0, plane.n) - (moving.radius + contact.still->radius);
-}
-
-/// Whether a part of the moving shape is on the outer side of a face: what is not comes from elsewhere.
-template <Scalar S>
-bool sticksOut(const SeamContact<S>& contact, int face) {
-  const PlacedShape<S>& moving = *contact.moving;
-  const Plane<S>& plane = contact.still->planes[face];
-  const Vector<S> farthest = moving.planes[farthestVertex(moving, plane.n)].v0;
-  return dot(farthest - plane.v0, plane.n) + moving.radius > contact.still->radius;
 }
 
 template <Scalar S>

@@ -144,6 +144,29 @@ TYPED_TEST(SeamTest, ABodyOfBoxesSlidesOverSeams) {
   }
 }
 
+// Of tiles that are a body each, kinematic, at rest or going the same way.
+TYPED_TEST(SeamTest, AWalkerArrivesOnBodiesThatMoveAlike) {
+  using S = TypeParam;
+  for (const Solving& solving : kAll) {
+    for (const int belt : {-1, 0, 1}) {
+      for (const int speed : {1, 3, 6}) {
+        Space<S> space;
+        TestFixture::set(space, solving);
+        for (int i = 0; i < 24; ++i) {
+          Body<S> tile = belt == 0 && i % 2 == 0 ? Body<S>::fixedInPlace() : Body<S>::kinematic();
+          tile.setPosition({S(i - 4), S(0)});
+          if (belt != 0) tile.setVelocity({ratio<S>(belt, 2), S(0)});
+          space.add(boxShape<S>(space.add(tile), BB<S>(S(0), S(-1), S(1), S(0))));
+        }
+        const ShapeId walker = TestFixture::addWalker(space, ratio<S>(13, 10), S(speed));
+        EXPECT_TRUE(TestFixture::arrives(space, walker, ratio<S>(133, 10), S(speed)))
+            << speed << " m/s, belt " << belt;
+        EXPECT_NEAR(double(space.body(bodyOf(space, walker)).velocity().x), speed, 2e-3 * speed);
+      }
+    }
+  }
+}
+
 // On what moves itself: a heavy plank of boxes, free in space.
 TYPED_TEST(SeamTest, ABallAndAWalkerKeepTheirSpeedOnABodyOfBoxes) {
   using S = TypeParam;
@@ -201,6 +224,30 @@ TYPED_TEST(SeamTest, AFloorOfThousandsOfPartsTakesNoLonger) {
   const Body<S>& body = space.body(bodyOf(space, plank));
   EXPECT_NEAR(double(body.velocity().x), 1, 2e-3);
   EXPECT_NEAR(double(body.position().y), 0.5, 6e-3);
+}
+
+// Wherever its corners are in a step: at a seam, just before, just behind.
+TYPED_TEST(SeamTest, AWalkerArrivesFromWhereverItBegins) {
+  using S = TypeParam;
+  for (const Solving& solving : kAll) {
+    for (const Ground ground : {Ground::boxes, Ground::segments, Ground::thickSegments}) {
+      for (const S& start :
+           {S(0), ratio<S>(1, 1000000), ratio<S>(-1, 1000000), ratio<S>(1, 10), ratio<S>(1, 2)}) {
+        for (const int speed : {1, 3, 6}) {
+          Space<S> space;
+          TestFixture::set(space, solving);
+          TestFixture::addFloor(space, ground, -3, 8);
+          const ShapeId walker = TestFixture::addWalker(space, start, S(speed));
+          const Body<S>& body = space.body(bodyOf(space, walker));
+          for (int i = 0; i < 60 * 5 / speed; ++i) space.step(ratio<S>(1, 60));
+          EXPECT_NEAR(double(body.position().x), double(start) + 5, 0.03)
+              << "ground " << int(ground) << ", " << speed << " m/s, from " << double(start);
+          EXPECT_NEAR(double(body.position().y), 0.5, 6e-3)
+              << "ground " << int(ground) << ", " << speed << " m/s";
+        }
+      }
+    }
+  }
 }
 
 TYPED_TEST(SeamTest, SmallGapsAndStepsAreFlushToo) {

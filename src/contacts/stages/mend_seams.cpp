@@ -36,8 +36,7 @@ void MendSeams<S>::run(StepContext<S>& step, std::vector<std::uint8_t>& found) {
   const std::span<const Side> all(sides_);
   for (std::size_t begin = 0, end; begin < all.size(); begin = end) {
     end = begin + 1;
-    while (end < all.size() && all[end].shape == all[begin].shape && all[end].group == all[begin].group)
-      ++end;
+    while (end < all.size() && all[end].isWith(all[begin])) ++end;
     if (end - begin > 1) judge(step, found, all.subspan(begin, end - begin));
   }
   apply(step, found);
@@ -64,9 +63,24 @@ void MendSeams<S>::addSide(const StepContext<S>& step, std::uint32_t pair, bool 
   const Pair<S>& seen = step.state.pairs[pair];
   const std::uint32_t shape = ofA ? seen.a.index : seen.b.index, other = ofA ? seen.b.index : seen.a.index;
   const std::uint32_t body = derived.traits[other].body;
-  const bool isStatic = derived.poses[body].type == BodyType::staticBody;
-  if (!isStatic && !derived.isCompound(body)) return;
-  sides_.push_back({shape, isStatic ? kStatic : body, pair});
+  const BodyType type = derived.poses[body].type;
+  const Body<S>& moving = step.state.bodies.valueAt(body);
+  if (type == BodyType::staticBody) {
+    sides_.push_back({shape, kAlike, pair, {}});
+  } else if (type == BodyType::kinematicBody && moving.angularVelocity() == S(0)) {
+    sides_.push_back({shape, kAlike, pair, moving.velocity()});
+  } else if (derived.isCompound(body)) {
+    sides_.push_back({shape, body, pair, {}});
+  }
+}
+
+template <Scalar S>
+bool MendSeams<S>::Side::operator<(const Side& other) const {
+  if (shape != other.shape) return shape < other.shape;
+  if (group != other.group) return group < other.group;
+  if (velocity.x != other.velocity.x) return velocity.x < other.velocity.x;
+  if (velocity.y != other.velocity.y) return velocity.y < other.velocity.y;
+  return pair < other.pair;
 }
 
 /// Judges those of one shape and group, all by what was found; what was judged in an earlier step stands as

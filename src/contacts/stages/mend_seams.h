@@ -19,8 +19,9 @@ struct ContactFound {
   static constexpr std::uint8_t kSeam = 8;   ///< Between what moves and what contacts do not move.
 };
 
-/// Judges the contacts of shapes that meet several others which do not move against each other, those of one
-/// body or of all that are static: see judgeSeam.
+/// Judges the contacts of shapes that meet several others which do not move against each other: those of one
+/// body, and those of all bodies that contacts do not move and that move alike without turning, as static
+/// ones do. See judgeSeam.
 template <Scalar S>
 class MendSeams {
  public:
@@ -33,9 +34,14 @@ class MendSeams {
   /// A pair as one of its shapes sees it.
   struct Side {
     std::uint32_t shape;
-    std::uint32_t group;  ///< Of the other shape: its body, or kStatic.
+    std::uint32_t group;  ///< Of the other shape: its body, or kAlike.
     std::uint32_t pair;
-    friend auto operator<=>(const Side&, const Side&) = default;
+    Vector<S> velocity{};  ///< Of those of kAlike, m/s.
+
+    bool isWith(const Side& other) const {
+      return shape == other.shape && group == other.group && velocity == other.velocity;
+    }
+    bool operator<(const Side& other) const;
   };
   /// Where a contact does not stay.
   struct Change {
@@ -44,7 +50,7 @@ class MendSeams {
     SeamVerdict verdict;
     CollisionInfo<S> info;
   };
-  static constexpr std::uint32_t kStatic = 0xffffffffu;
+  static constexpr std::uint32_t kAlike = 0xffffffffu;
   // Among thousands that lie over each other each takes a while.
   static constexpr std::uint32_t kJudgedAtOnce = 16;
 
