@@ -29,10 +29,13 @@ class Library:
             self.types[new] = SCALARS[old]
         for opaque in DESCRIPTION["opaque"]:
             self.types[opaque["name"]] = type(opaque["name"], (ctypes.Structure,), {})
+        # Function pointers may take structures, and these may hold function pointers.
+        for structure in DESCRIPTION["structures"]:
+            self.types[structure["name"]] = type(structure["name"], (ctypes.Structure,), {})
         for callback in DESCRIPTION["callbacks"]:
             self.types[callback["name"]] = self.function_type(callback)
         for structure in DESCRIPTION["structures"]:
-            self.types[structure["name"]] = self.structure_type(structure)
+            self.lay_out(structure)
         self.constants = {constant["name"]: constant["value"] for constant in DESCRIPTION["constants"]}
         for function in DESCRIPTION["functions"]:
             bound = getattr(self.library, function["name"])
@@ -57,16 +60,16 @@ class Library:
         arguments = [self.type_of(argument["type"], argument) for argument in about["arguments"]]
         return ctypes.CFUNCTYPE(self.type_of(about["result"], {}), *arguments)
 
-    def structure_type(self, about):
+    def lay_out(self, about):
         fields = []
         for field in about["fields"]:
             kind = self.type_of(field["type"], {key: field[key] for key in field if key != "count"})
             fields.append((field["name"], kind * field["count"] if "count" in field else kind))
-        made = type(about["name"], (ctypes.Structure,), {"_fields_": fields})
+        made = self.types[about["name"]]
+        made._fields_ = fields
         assert ctypes.sizeof(made) == about["size"]["64"], about["name"]
         for field in about["fields"]:
             assert getattr(made, field["name"]).offset == field["offset"]["64"], field["name"]
-        return made
 
     def checked(self, bound, function):
         if function["result"] != "samestep_status":

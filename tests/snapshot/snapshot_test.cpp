@@ -183,7 +183,7 @@ TYPED_TEST(SnapshotTest, IsRefusedWhereverItIsCutShortAndMended) {
   for (std::size_t length = kWorldAt + 8; length < bytes.size(); ++length) {
     Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length));
     for (unsigned i = 0; i < 8; ++i) cut[kSizeAt + i] = static_cast<std::uint8_t>(length >> (8 * i));
-    mendChecksum(cut);
+    mendSnapshot(cut);
     const std::int64_t offset = this->offsetOfComplaint(cut);
     ASSERT_GE(offset, static_cast<std::int64_t>(kWorldAt)) << length;
     ASSERT_LE(offset, static_cast<std::int64_t>(length));
@@ -197,7 +197,7 @@ TYPED_TEST(SnapshotTest, NothingMayFollowItsEnd) {
   EXPECT_EQ(this->offsetOfComplaint(bytes), size);
   bytes[kSizeAt] = static_cast<std::uint8_t>(bytes.size());
   bytes[kSizeAt + 1] = static_cast<std::uint8_t>(bytes.size() >> 8);
-  mendChecksum(bytes);
+  mendSnapshot(bytes);
   EXPECT_EQ(this->offsetOfComplaint(bytes), size - 8);
 }
 
@@ -220,7 +220,7 @@ TYPED_TEST(SnapshotTest, AlteredWithTheChecksumMendedItIsRefusedOrAnotherWorlds)
     for (const unsigned flip : {0x01u, 0x02u, 0x80u, 0xffu}) {
       Bytes altered = bytes;
       altered[i] = static_cast<std::uint8_t>(altered[i] ^ flip);
-      mendChecksum(altered);
+      mendSnapshot(altered);
       if (this->offsetOfComplaint(altered) >= 0) {
         ++refused;
         continue;
@@ -256,7 +256,7 @@ TYPED_TEST(SnapshotTest, CountsOfBillionsAreRefusedBeforeMemoryIsTaken) {
   for (std::size_t i = kWorldAt; i + 12 < bytes.size(); ++i) {
     Bytes altered = bytes;
     for (std::size_t j = 0; j < 4; ++j) altered[i + j] = 0xff;
-    mendChecksum(altered);
+    mendSnapshot(altered);
     // As many records as the bytes could hold, at the most.
     ASSERT_LE(memoryTaken(altered), usual + bytes.size() / 2 * sizeof(Shape<S>)) << i;
   }
@@ -267,7 +267,7 @@ TYPED_TEST(SnapshotTest, OtherVersionsAndScalarsAreRefusedAtTheirPlace) {
   const auto expectRefusedAt = [&](std::size_t at, std::uint8_t value, const char* reason) {
     Bytes altered = bytes;
     altered[at] = value;
-    mendChecksum(altered);
+    mendSnapshot(altered);
     std::string said;
     EXPECT_EQ(this->offsetOfComplaint(altered, &said), static_cast<std::int64_t>(at));
     EXPECT_EQ(said, reason);
@@ -287,7 +287,7 @@ TYPED_TEST(SnapshotTest, AnotherRevisionIsTakenOnlyIfAskedForByName) {
   using S = TypeParam;
   Bytes bytes = this->snapshotAfter(3, 30);
   bytes[kRevisionAt] = kSimulationRevision + 41;
-  mendChecksum(bytes);
+  mendSnapshot(bytes);
   Space<S> space;
   registerNamedHandlers(space);
   const std::uint64_t before = space.hash();
@@ -400,7 +400,7 @@ TYPED_TEST(SnapshotTest, AGenerationThatNoSlotReachesIsRefused) {
   EXPECT_EQ(this->offsetOfComplaint(bytes), -1);
 
   *place = 0xff;
-  mendChecksum(bytes);
+  mendSnapshot(bytes);
 
   EXPECT_GE(this->offsetOfComplaint(bytes), static_cast<std::int64_t>(kWorldAt));
 }

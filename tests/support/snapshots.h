@@ -6,9 +6,19 @@
 #include <vector>
 
 #include <samestep/snapshot.h>
+#include <xxhash.h>
+
 #include "support/recordings.h"
 
 namespace samestep {
+
+/// Writes the checksum at the end of a snapshot again.
+inline void mendSnapshot(Bytes& bytes) {
+  if (bytes.size() < 8) return;
+  const std::size_t at = bytes.size() - 8;
+  const std::uint64_t checksum = XXH3_64bits(bytes.data(), at);
+  for (unsigned i = 0; i < 8; ++i) bytes[at + i] = static_cast<std::uint8_t>(checksum >> (8 * i));
+}
 
 template <Scalar S>
 Bytes snapshotOf(const Space<S>& space) {
@@ -26,7 +36,7 @@ Bytes snapshotOf(const WorldState<S>& world) {
   encodeWorld(world, bytes);
   bytes.resize(bytes.size() + 8);
   for (unsigned i = 0; i < 8; ++i) bytes[20 + i] = static_cast<std::uint8_t>(bytes.size() >> (8 * i));
-  mendChecksum(bytes);
+  mendSnapshot(bytes);
   return bytes;
 }
 
