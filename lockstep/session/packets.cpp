@@ -218,7 +218,8 @@ void Session::Impl::sendInputs(Seat seat) {
   writer.u8(static_cast<std::uint8_t>(current - link.acked));
   const std::int32_t lag = std::clamp(link.lagHere / 128, -64, 63) + 64;
   writer.u8(static_cast<std::uint8_t>(lag | (paused ? kPaused : 0)));
-  encodeEntries(writer, own(), link.acked, own().end());
+  // Whoever goes on without saying that ours came cannot be told them for ever.
+  if (own().has(link.acked)) encodeEntries(writer, own(), link.acked, own().end());
   send(seat, writer);
 }
 

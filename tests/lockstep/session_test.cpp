@@ -371,6 +371,25 @@ TEST(SessionTest, MalformedDatagramsAreCountedAndDropped) {
   }
 }
 
+TEST(SessionTest, APeerThatNeverSaysWhatCameIsToldNoInputsThatAreForgotten) {
+  Table table(2);
+  table.play(10);
+  const Tick first = table.sessions[1]->tick();
+  for (Tick i = 0; i < 400; ++i) {
+    table.now += 16'667;
+    // Eight inputs that hold what the one before held; of ours none came.
+    const auto base = static_cast<std::uint16_t>(first + i);
+    const auto low = static_cast<std::uint8_t>(base), high = static_cast<std::uint8_t>(base >> 8);
+    const std::uint8_t packet[] = {2 | 16, 0, 0, low, high, 0, 0, 0, 64, 8 << 2};
+    table.post->put(1, 0, packet);
+    const std::uint8_t held = 1;
+    table.sessions[0]->frame(table.now, {&held, 1});
+  }
+
+  EXPECT_GT(table.sessions[0]->tick(), 390u);
+  EXPECT_EQ(table.sessions[0]->stats().badPackets, 0u);
+}
+
 TEST(SessionTest, AStrangersBytesChangeNothing) {
   Table table(2), calm(2);
   std::mt19937_64 random(1);
