@@ -4,20 +4,23 @@
 
 #include <samestep/circle_shape.h>
 #include <samestep/poly_shape.h>
+#include <samestep/segment_shape.h>
 
 #include "base/require_ieee.h"
+#include "study/contact_ladders.h"
 #include "study/degenerate_shapes.h"
 #include "study/envelope.h"
 
 namespace samestep {
 namespace {
 
-constexpr int kStepsPerSecond = 60;
-
 /// A world with a static box in it, solved by a setting.
 template <Scalar S>
 class Trial {
  public:
+  using Number = S;
+  static constexpr int kStepsPerSecond = 60;
+
   Trial(const Setting& setting, const Vector<S>& gravity) {
     useMethod(space_, *setting.method, setting.count);
     space_.setGravity(gravity);
@@ -43,6 +46,34 @@ class Trial {
     Shape<S> shape = circleShape<S>({}, radius, Vector<S>());
     shape.setDensity(S(1));
     return add(body, shape, ratio<S>(6, 10));
+  }
+
+  void addStaticBox(const Vector<S>& center, S width, S height, const TrialSurface<S>& surface) {
+    Body<S> body = Body<S>::fixedInPlace();
+    body.setPosition(center);
+    add(body, boxShape<S>({}, width, height), surface);
+  }
+  void addStaticSegment(const Vector<S>& a, const Vector<S>& b, const TrialSurface<S>& surface) {
+    add(Body<S>::fixedInPlace(), segmentShape<S>({}, a, b, S(0)), surface);
+  }
+  /// A box of 1 kg per square metre.
+  BodyId addBox(const Vector<S>& center, S width, S height, const Vector<S>& velocity,
+                const TrialSurface<S>& surface, bool turns) {
+    Body<S> body = turns ? Body<S>() : Body<S>::nonRotating(width * height);
+    body.setPosition(center);
+    body.setVelocity(velocity);
+    Shape<S> shape = boxShape<S>({}, width, height);
+    if (turns) shape.setDensity(S(1));
+    return add(body, shape, surface);
+  }
+  BodyId addBall(const Vector<S>& center, S radius, const Vector<S>& velocity,
+                 const TrialSurface<S>& surface) {
+    Body<S> body;
+    body.setPosition(center);
+    body.setVelocity(velocity);
+    Shape<S> shape = circleShape<S>({}, radius, Vector<S>());
+    shape.setDensity(S(1));
+    return add(body, shape, surface);
   }
 
   /// A static body of any shape.
@@ -75,12 +106,19 @@ class Trial {
   }
 
   const Body<S>& body(BodyId id) const { return space_.body(id); }
+  Vector<S> center(BodyId id) const { return body(id).worldCenter(); }
+  Vector<S> velocity(BodyId id) const { return body(id).velocity(); }
+  S angle(BodyId id) const { return body(id).angle(); }
 
  private:
-  BodyId add(const Body<S>& body, Shape<S> shape, S friction) {
+  BodyId add(const Body<S>& body, const Shape<S>& shape, S friction) {
+    return add(body, shape, TrialSurface<S>{friction, S(0)});
+  }
+  BodyId add(const Body<S>& body, Shape<S> shape, const TrialSurface<S>& surface) {
     const BodyId id = space_.add(body);
     shape.setBody(id);
-    shape.setFriction(friction);
+    shape.setFriction(surface.friction);
+    shape.setElasticity(surface.elasticity);
     space_.add(shape);
     return id;
   }
@@ -143,10 +181,10 @@ bool bulletsHold(const Setting& setting, int speed, S thickness) {
   trial.addStaticBox({thickness / S(2), S(kBullets / 2)}, thickness, S(kBullets + 4));
   std::vector<BodyId> bullets;
   for (int i = 0; i < kBullets; ++i) {
-    const S distance = S(kFlight) + ratio<S>(speed, kStepsPerSecond) * ratio<S>(i, kBullets);
+    const S distance = S(kFlight) + ratio<S>(speed, Trial<S>::kStepsPerSecond) * ratio<S>(i, kBullets);
     bullets.push_back(trial.addBullet({-distance, S(i)}, ratio<S>(1, 10), {S(speed), S(0)}));
   }
-  trial.run(kFlight * kStepsPerSecond / speed + kStepsPerSecond);
+  trial.run(kFlight * Trial<S>::kStepsPerSecond / speed + Trial<S>::kStepsPerSecond);
   for (const BodyId id : bullets) {
     if (trial.body(id).worldCenter().x > S(0)) return false;
   }
@@ -193,10 +231,10 @@ bool pairParts(const Setting& setting, const NastyPair& pair) {
   trial.addStatic(freeB ? shapeA : shapeB, freeB ? placeA : placeB, freeB ? angleA : angleB);
   const BodyId id = trial.addFree(freeB ? shapeB : shapeA, freeB ? placeB : placeA, freeB ? angleB : angleA);
   S most = S(0);
-  for (int step = 0; step < kSeconds * kStepsPerSecond; ++step) {
+  for (int step = 0; step < kSeconds * Trial<S>::kStepsPerSecond; ++step) {
     const Vector<S> before = trial.body(id).worldCenter();
     trial.run(1);
-    most = max(most, length(trial.body(id).worldCenter() - before) * S(kStepsPerSecond));
+    most = max(most, length(trial.body(id).worldCenter() - before) * S(Trial<S>::kStepsPerSecond));
   }
   return most <= S(10);
 }
@@ -207,6 +245,24 @@ bool firstHold(const Setting& setting, std::span<const Thing> things, int rung, 
   return std::all_of(things.begin(), things.begin() + rung, [&](const Thing& thing) {
     return inScalarOf(setting, [&](auto scalar) { return holds(scalar, thing); });
   });
+}
+
+/// A ladder of contact_ladders.h: each rung in a world of its own.
+template <class Climb>
+bool holdsInScalarOf(const Setting& setting, int gravity, Climb&& climb) {
+  return inScalarOf(setting, [&](auto scalar) {
+    using S = decltype(scalar);
+    Trial<S> trial(setting, {S(0), S(-gravity)});
+    return climb(trial);
+  });
+}
+
+/// Whether the walker arrives at each speed and floor up to the rung.
+bool walkersArrive(const Setting& setting, int rung) {
+  for (int i = 1; i <= rung; ++i) {
+    if (!holdsInScalarOf(setting, 10, [&](auto& trial) { return walkerArrives(trial, i); })) return false;
+  }
+  return true;
 }
 
 constexpr int kTopSpeed = 1024;
@@ -241,6 +297,18 @@ const Ladder kLadders[] = {
      bulletsHoldAt<4>},
     {"bullet-6cm", "m/s that a wall of 6.25 cm stops", kBulletTrial, kBulletFails, kTopSpeed,
      bulletsHoldAt<1>},
+    {"walker", "speeds and floors, in turn, that a walker crosses",
+     "a box of 1 m that may not turn walks without friction over 12 m of flush boxes, then of segments, of "
+     "1 m each, at 1, 2, 3, 4, 6, 8, 12 and 16 m/s",
+     "it has not arrived in time, has less than 99 % of its speed, or is more than 5 cm above or in the "
+     "floor",
+     kWalkerTop, walkersArrive},
+    {"pass", "how close a ball passes a corner unmoved, 64 mm / n",
+     "a ball of 25 cm radius flies past the corner of a box at 2 m/s without touching it",
+     "either component of its velocity has changed by more than 1 mm/s", kPassTop,
+     [](const Setting& setting, int rung) {
+       return holdsInScalarOf(setting, 0, [&](auto& trial) { return passIsLeftAlone(trial, rung); });
+     }},
     {"shapes", "degenerate shapes, in turn, that rest on a floor for 10 s",
      "the shapes of replay/study/degenerate_shapes.cpp one by one, each alone on a body of 1 kg, fall from "
      "10 cm; "
