@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <samestep/expects.h>
-
 #include "narrow_phase/support.h"
 
 namespace samestep {
@@ -146,11 +144,10 @@ S extentOf(const PlacedShape<S>& a, const PlacedShape<S>& b) {
 }
 
 /// The best of all faces, or the one looked at first if that one separates the shapes by more than `reach`.
-/// @param a, b   shapes of not too many vertices, see kMaxFacePairs
+/// @param a, b   meant for shapes of few vertices, see kMaxFacePairs: every face is looked at
 /// @param start  the id of an earlier answer: that face is looked at first
 template <Scalar S>
 FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, std::uint32_t start) {
-  expects(a.count * b.count <= kMaxFacePairs);
   return extentOf(a, b) < S(kLocalReach) ? searchFaces<LocalWay<S>>(a, b, reach, start)
                                          : searchFaces<ExactWay<S>>(a, b, reach, start);
 }

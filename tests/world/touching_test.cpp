@@ -3,6 +3,7 @@
 #include <samestep/space.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -177,12 +178,13 @@ TYPED_TEST(TouchingTest, AOneWayPlatformHoldsWhoClearedItByMillimetres) {
     const S half = ratio<S>(1, 4), top = half + ratio<S>(4, 1000);
     const ShapeId id = round ? addDisc<S>(space, {S(0), S(-1)}, half, S(1))
                              : addBox<S>(space, {S(0), S(-1)}, half + half, half + half, S(1));
-    Body<S>& body = space.body(bodyOf(space, id));
-    body.setVelocity({S(0), S(6)});
-    while (body.position().y <= half && body.velocity().y > S(0)) space.step(kTick<S>);
-    ASSERT_GT(body.position().y, half);
-    body.setPosition({S(0), top});
-    body.setVelocity({});
+    const BodyId mover = bodyOf(space, id);
+    space.body(mover).setVelocity({S(0), S(6)});
+    const auto seen = [&]() -> const Body<S>& { return std::as_const(space).body(mover); };
+    while (seen().position().y <= half && seen().velocity().y > S(0)) space.step(kTick<S>);
+    ASSERT_GT(seen().position().y, half);
+    space.body(mover).setPosition({S(0), top});
+    space.body(mover).setVelocity({});
     for (int i = 0; i < 128; ++i) space.step(kTick<S>);
     EXPECT_NEAR(double(space.body(bodyOf(space, id)).position().y), double(half), 1e-2) << round;
   }
