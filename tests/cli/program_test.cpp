@@ -183,7 +183,7 @@ TEST_F(ProgramTest, ClaimsAreRecordedToldAndChecked) {
   ASSERT_EQ(
       run("record stack --ticks 9 --note level=one --claim samestep.bodies -o '" + file("a.rec") + "'").code,
       0);
-  EXPECT_THAT(run("verify '" + file("a.rec") + "'").out, HasSubstr(", 1 claims hold"));
+  EXPECT_THAT(run("verify '" + file("a.rec") + "'").out, HasSubstr(", 1 claim holds"));
   const Outcome info = run("info --keyframes '" + file("a.rec") + "'");
   EXPECT_EQ(info.code, 0);
   for (const char* told : {"format version 3", "9 ticks of 0.01", "keyframes: 1,", "note level: one",

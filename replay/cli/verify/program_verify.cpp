@@ -134,11 +134,12 @@ class Summary {
   }
   std::string text() const {
     const auto took = static_cast<std::uint64_t>(std::max<std::int64_t>(milliseconds() - start_, 1));
-    std::string line = std::to_string(told_) + " files:";
+    std::string line = std::to_string(told_) + (told_ == 1 ? " file" : " files");
+    const char* before = ": ";
     for (std::size_t i = 0; i < std::size(counts_); ++i) {
       if (counts_[i] == 0) continue;
-      line += (line.back() == ':' ? " " : ", ") + std::to_string(counts_[i]) + " " +
-              verdictName(static_cast<Verdict>(i));
+      line += before + std::to_string(counts_[i]) + " " + verdictName(static_cast<Verdict>(i));
+      before = ", ";
     }
     return line + "; " + std::to_string(ticks_) + " ticks in " + std::to_string(took) + " ms (" +
            std::to_string(ticks_ * 1000 / took) + " ticks/s)\n";

@@ -74,7 +74,10 @@ std::string goodLine(const Judgement& judgement, std::int64_t milliseconds) {
   std::string line = "good: all " + number(result.ticks) + " ticks give the recorded hashes, last " +
                      hex(result.computedHash) + " (" + number(perSecond) + " ticks/s, " +
                      number(perSecond / 60) + " times real time at 60 Hz)";
-  if (result.claimsThatHold > 0) line += ", " + number(result.claimsThatHold) + " claims hold";
+  if (result.claimsThatHold > 0) {
+    line +=
+        ", " + number(result.claimsThatHold) + (result.claimsThatHold == 1 ? " claim holds" : " claims hold");
+  }
   if (result.claimsUnknown > 0) line += ", " + number(result.claimsUnknown) + " claims are unknown here";
   return line;
 }
