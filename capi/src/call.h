@@ -85,6 +85,38 @@ samestep_status call(World* world, Action&& action) noexcept {
   }
 }
 
+/// Calls of a recorder or session that are under way: functions of the caller's may run in them, and may ask
+/// for its end.
+struct Calls {
+  std::int32_t underWay = 0;
+  bool ending = false;
+};
+
+/// Ends what is used at once or, from within a call of it, when that returns.
+template <class Used>
+void endAfterCalls(Used* used) {
+  if (used != nullptr && used->calls.underWay > 0) {
+    used->calls.ending = true;
+  } else {
+    delete used;
+  }
+}
+
+/// Notes that a call of a recorder or session is under way.
+template <class Used>
+class InCall {
+ public:
+  explicit InCall(Used& used) : used_(used) { ++used_.calls.underWay; }
+  ~InCall() {
+    if (--used_.calls.underWay == 0 && used_.calls.ending) delete &used_;
+  }
+  InCall(const InCall&) = delete;
+  InCall& operator=(const InCall&) = delete;
+
+ private:
+  Used& used_;
+};
+
 /// Runs action(a number of the scalar's type).
 /// @throws Refusal
 template <class Action>

@@ -19,6 +19,7 @@ struct samestep_recorder {
   samestep_recorder& operator=(const samestep_recorder&) = delete;
   virtual ~samestep_recorder() { --world.users; }
   samestep_world& world;
+  samestep::c::Calls calls;
 };
 
 namespace samestep::c {
@@ -110,6 +111,7 @@ struct RecorderOf : samestep_recorder {
 template <class Action>
 samestep_status callRecorder(samestep_recorder* recorder, Action&& action) noexcept {
   if (recorder == nullptr) return callFree([] { refuse(SAMESTEP_NULL_ARGUMENT); });
+  const InCall inCall(*recorder);
   return call(&recorder->world, [&]<class World>(World&) {
     action(static_cast<RecorderOf<typename World::Number>&>(*recorder));
   });
@@ -215,11 +217,12 @@ samestep_status samestep_world_set_input_function(samestep_world* world, sameste
 samestep_status samestep_recorder_create(samestep_world* world, uint32_t rate, samestep_recorder** recorder) {
   return call(world, [&]<class World>(World& of) {
     at(recorder);
+    requireOr(of.destroyable, SAMESTEP_IN_USE);
     *recorder = new RecorderOf<typename World::Number>(of, rate);
   });
 }
 
-void samestep_recorder_destroy(samestep_recorder* recorder) { delete recorder; }
+void samestep_recorder_destroy(samestep_recorder* recorder) { endAfterCalls(recorder); }
 
 samestep_status samestep_recorder_apply(samestep_recorder* recorder, const samestep_command* command,
                                         samestep_body_id* body) {

@@ -21,6 +21,7 @@ struct samestep_session {
 
   samestep_world& world;
   const samestep_session_def def;
+  samestep::c::Calls calls;
 };
 
 namespace samestep::c {
@@ -112,6 +113,7 @@ struct SessionOf final : samestep_session {
 template <class Action>
 samestep_status callSession(samestep_session* session, Action&& action) noexcept {
   if (session == nullptr) return callFree([] { refuse(SAMESTEP_NULL_ARGUMENT); });
+  const InCall inCall(*session);
   return call(&session->world, [&](auto&) { action(session->session()); });
 }
 
@@ -176,11 +178,12 @@ samestep_status samestep_session_create(samestep_world* world, const samestep_se
     current(def);
     requireOr(def->apply_inputs != nullptr && def->send != nullptr && def->receive != nullptr,
               SAMESTEP_NULL_ARGUMENT);
+    requireOr(of.destroyable, SAMESTEP_IN_USE);
     *session = new SessionOf<typename World::Number>(of, *def);
   });
 }
 
-void samestep_session_destroy(samestep_session* session) { delete session; }
+void samestep_session_destroy(samestep_session* session) { endAfterCalls(session); }
 
 samestep_status samestep_session_frame(samestep_session* session, uint64_t now, const uint8_t* held,
                                        size_t size, int32_t* frame) {

@@ -119,10 +119,30 @@ struct Recorder<S>::Impl {
     require<Fault::ForeignWorld>(!checking || space.hash() == lastHash,
                                  "The world was changed by something that was not recorded.");
   }
+  /// A function of the game's that a step or command calls would write between what is written of that.
+  void requireIdle() const {
+    require<Fault::SpaceLocked>(!busy, "A recorder is used from within its own step or command.");
+  }
+  /// Notes that the world is being changed by the recorder.
+  class Change {
+   public:
+    explicit Change(Impl& impl) : impl_(impl) {
+      impl_.requireIdle();
+      impl_.busy = true;
+    }
+    ~Change() { impl_.busy = false; }
+    Change(const Change&) = delete;
+    Change& operator=(const Change&) = delete;
+
+   private:
+    Impl& impl_;
+  };
   /// Writes `written`, then does what it says: what cannot be written is not done, and what cannot be done is
   /// cut off again.
   template <class Apply, class Written>
   BodyId record(CommandKind kind, const Written& written, Apply&& apply) {
+    const Change change(*this);
+    require<Fault::SpaceLocked>(!space.isLocked(), "Commands are recorded between steps.");
     struct CutOff {
       std::vector<std::uint8_t>& items;
       std::size_t end;
@@ -173,6 +193,7 @@ struct Recorder<S>::Impl {
     return lastHash;
   }
   void claim(std::string_view key, std::span<const std::uint8_t> value) {
+    requireIdle();
     followRestore(0);
     std::vector<std::uint8_t>& item = claimItem;
     item.clear();
@@ -195,6 +216,7 @@ struct Recorder<S>::Impl {
   std::uint64_t lastHash = 0;
   bool checking = false;
   bool finished = false;
+  bool busy = false;  ///< A step or command is under way.
   RecordingWriter out;
   BytesSink itemsSink{out.items()};
   CanonicalWriter<BytesSink> write{itemsSink};
@@ -240,6 +262,7 @@ void Recorder<S>::input(std::span<const std::uint8_t> bytes) {
 
 template <Scalar S>
 std::uint64_t Recorder<S>::step() {
+  const typename Impl::Change change(*impl_);
   impl_->followRestore(0);
   impl_->check();
   impl_->out.prepareTick();
@@ -249,6 +272,7 @@ std::uint64_t Recorder<S>::step() {
 
 template <Scalar S>
 std::uint64_t Recorder<S>::stepped() {
+  impl_->requireIdle();
   impl_->followRestore(1);
   require<Fault::ForeignWorld>(impl_->space.stamp() == impl_->stamp + 1,
                                "stepped() is called once after each step.");
@@ -260,6 +284,7 @@ std::uint64_t Recorder<S>::stepped() {
 
 template <Scalar S>
 void Recorder<S>::confirm(std::uint64_t ticks) {
+  impl_->requireIdle();
   require<Fault::ValueOutOfRange>(ticks <= impl_->out.ticks(),
                                   "Only steps that are recorded can be confirmed.");
   impl_->out.confirm(ticks);
@@ -267,17 +292,20 @@ void Recorder<S>::confirm(std::uint64_t ticks) {
 
 template <Scalar S>
 void Recorder<S>::setRewindTicks(std::uint32_t ticks) {
+  impl_->requireIdle();
   require<Fault::ValueOutOfRange>(ticks <= kMostRewindTicks, "At most 2^15 steps can be taken back.");
   impl_->out.setRewindTicks(ticks);
 }
 
 template <Scalar S>
 void Recorder<S>::setKeyframes(const KeyframeBudget& budget) {
+  impl_->requireIdle();
   impl_->out.setKeyframes(budget);
 }
 
 template <Scalar S>
 void Recorder<S>::setPacking(bool packing) {
+  impl_->requireIdle();
   impl_->out.setPacking(packing);
 }
 
@@ -295,6 +323,7 @@ void Recorder<S>::claim(std::string_view key, std::string_view value) {
 
 template <Scalar S>
 void Recorder<S>::note(std::string_view key, std::string_view value) {
+  impl_->requireIdle();
   requireKey(key);
   require<Fault::ValueOutOfRange>(value.size() <= kMaxNoteBytes, "A note has at most 2^16 bytes.");
   impl_->out.note(key, value);
@@ -302,12 +331,14 @@ void Recorder<S>::note(std::string_view key, std::string_view value) {
 
 template <Scalar S>
 void Recorder<S>::setChecking(bool checking) {
+  impl_->requireIdle();
   impl_->checking = checking;
   if (checking) impl_->lastHash = impl_->space.hash();
 }
 
 template <Scalar S>
 void Recorder<S>::finish() {
+  impl_->requireIdle();
   if (impl_->finished) return;
   impl_->followRestore(0);
   finish(impl_->out.ticks());
@@ -315,6 +346,7 @@ void Recorder<S>::finish() {
 
 template <Scalar S>
 void Recorder<S>::finish(std::uint64_t ticks) {
+  impl_->requireIdle();
   if (impl_->finished) return;
   require<Fault::ValueOutOfRange>(ticks >= impl_->out.oldest() && ticks <= impl_->out.ticks(),
                                   "The recorder cannot end after that step.");

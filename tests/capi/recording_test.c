@@ -147,10 +147,37 @@ static void test_match(int32_t scalar) {
   check_status(samestep_world_destroy(world), SAMESTEP_OK, "destroy", __LINE__);
 }
 
+/* Ends the recorder whose command calls it, and asks it for more. */
+static samestep_status end_recorder(samestep_world* world, const uint8_t* bytes, size_t size, void* data) {
+  samestep_recorder* recorder = data;
+  (void)bytes, (void)size;
+  check_status(samestep_recorder_step(recorder, NULL), SAMESTEP_SPACE_LOCKED, "from within", __LINE__);
+  samestep_recorder_destroy(recorder);
+  check_status(samestep_world_destroy(world), SAMESTEP_IN_USE, "until it returns", __LINE__);
+  return SAMESTEP_OK;
+}
+
+/* A recorder that a function of its own command ends lives until the command has been made. */
+static void test_end_from_within(int32_t scalar) {
+  samestep_world* world = make_world(scalar);
+  samestep_recorder* recorder = NULL;
+  check_status(samestep_recorder_create(world, 60, &recorder), SAMESTEP_OK, "recorder", __LINE__);
+  check_status(samestep_world_set_input_function(world, end_recorder, recorder), SAMESTEP_OK, "input",
+               __LINE__);
+  samestep_command command;
+  samestep_command_init(&command);
+  command.kind = SAMESTEP_USER_INPUT;
+  check_status(samestep_recorder_apply(recorder, &command, NULL), SAMESTEP_OK, "apply", __LINE__);
+  check_status(samestep_world_destroy(world), SAMESTEP_OK, "it has ended", __LINE__);
+}
+
 void test_recording(void) {
   begin("recording");
   int32_t built[2];
   const int count = scalars(built);
-  for (int i = 0; i < count; ++i) test_match(built[i]);
+  for (int i = 0; i < count; ++i) {
+    test_match(built[i]);
+    test_end_from_within(built[i]);
+  }
   samestep_recorder_destroy(NULL);
 }

@@ -5,6 +5,7 @@
 #include <samestep/version.h>
 
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -274,6 +275,57 @@ TEST(RecordingBytesTest, AreTheSameForCheckedAndWrappingFixed) {
   EXPECT_EQ(recordSmallMatch<Fixed>(), recordSmallMatch<CheckedFixed>());
 }
 #endif
+
+/// What a function that a step or command calls asks of the recorder, and whether it was refused.
+template <Scalar S>
+struct FromWithin {
+  Recorder<S>* recorder = nullptr;
+  int refused = 0;
+
+  void askAll() {
+    const auto ask = [&](auto&& call) {
+      try {
+        call();
+      } catch (const Error& error) {
+        if (error.fault() == Fault::SpaceLocked) ++refused;
+      }
+    };
+    ask([&] { recorder->apply(UserInput{{7}}); });
+    ask([&] { recorder->step(); });
+    ask([&] { recorder->stepped(); });
+    ask([&] { recorder->claim("a", "b"); });
+    ask([&] { recorder->note("a", "b"); });
+    ask([&] { recorder->finish(); });
+  }
+};
+constexpr int kAsked = 6;
+
+TYPED_TEST(RecordingTest, FunctionsOfAStepOrCommandCannotWriteIntoIt) {
+  FromWithin<TypeParam> within;
+  Wiring<TypeParam> wiring;
+  wiring.data = &within;
+  wiring.applyInput = [](Space<TypeParam>&, std::span<const std::uint8_t> bytes, void* data) {
+    static_cast<FromWithin<TypeParam>*>(data)->askAll();
+    require<Fault::ValueOutOfRange>(bytes[0] != 0);
+  };
+  Space<TypeParam> space;
+  Bytes bytes;
+  Recorder<TypeParam> recorder(space, kTick<TypeParam>, bytes, wiring);
+  within.recorder = &recorder;
+  recorder.step();
+
+  recorder.apply(UserInput{{1}});
+  EXPECT_EQ(std::exchange(within.refused, 0), kAsked);
+  EXPECT_THROW(recorder.apply(UserInput{{0}}), Error);
+  EXPECT_EQ(std::exchange(within.refused, 0), kAsked);
+
+  recorder.step();
+  recorder.finish();
+  wiring.applyInput = [](Space<TypeParam>&, std::span<const std::uint8_t>, void*) {};
+  const VerifyResult result = verify<TypeParam>(bytes, wiring);
+  EXPECT_TRUE(result.matches);
+  EXPECT_EQ(result.ticks, 2u);
+}
 
 }  // namespace
 }  // namespace samestep

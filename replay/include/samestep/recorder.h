@@ -30,7 +30,9 @@ using ByteSink = void (*)(std::span<const std::uint8_t> bytes, void* data);
 ///
 /// All that changes the world between steps must go through apply(), so that it is recorded; functions
 /// registered with the Space, and what they do during a step, are not recorded but must be registered again
-/// for the replay. A recording that was not finished is taken by readers that
+/// for the replay. None of them may use the recorder: what it would write belongs into a step or command that
+/// is being written, so within its own step() and apply() it refuses all with SpaceLocked, and commands
+/// wherever the Space is locked. A recording that was not finished is taken by readers that
 /// ask for it (Ending::mayBeCut), and refused by others.
 ///
 /// Rollback: where the Space has been restored to the world after a recorded step, or to the one the

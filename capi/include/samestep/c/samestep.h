@@ -960,11 +960,13 @@ SAMESTEP_C_API samestep_status samestep_world_set_input_function(samestep_world*
 
 /* Begins to record a world in memory that is stepped `rate` times a second, 1 to 1000000. Commands must go
  * through the recorder from now on; after samestep_world_restore to a recorded tick, the recording goes back
- * there as well. SAMESTEP_SPACE_LOCKED, SAMESTEP_VALUE_OUT_OF_RANGE, SAMESTEP_FOREIGN_WORLD for a world
- * beyond the limits. */
+ * there as well. From within its own step or command, and commands while the world is locked, are refused
+ * with SAMESTEP_SPACE_LOCKED. SAMESTEP_SPACE_LOCKED, SAMESTEP_VALUE_OUT_OF_RANGE, SAMESTEP_FOREIGN_WORLD for
+ * a world beyond the limits, SAMESTEP_IN_USE for a world of samestep_verify. */
 SAMESTEP_C_API samestep_status samestep_recorder_create(samestep_world* world, uint32_t rate,
                                                         samestep_recorder** recorder);
-/* Ends a recorder before its world; null does nothing. */
+/* Ends a recorder before its world; null does nothing. From a function that a call of the recorder has made,
+ * it ends when that call returns. */
 SAMESTEP_C_API void samestep_recorder_destroy(samestep_recorder* recorder);
 /* Applies a command and records it, as samestep_world_apply; SAMESTEP_FOREIGN_WORLD where the world was given
  * another one, or where checking finds a change that was not recorded. Messages are the world's. */
@@ -1117,10 +1119,12 @@ typedef struct samestep_session_def {
 SAMESTEP_C_API void samestep_session_def_init(samestep_session_def* def);
 /* Begins a match in which the world is stepped by the session alone. Peers compare revision, fingerprint, the
  * world as it is now, its rate and `content` before they start. The world cannot be destroyed before the
- * session. SAMESTEP_WRONG_VERSION, SAMESTEP_NULL_ARGUMENT for a function, SAMESTEP_VALUE_OUT_OF_RANGE. */
+ * session. SAMESTEP_WRONG_VERSION, SAMESTEP_NULL_ARGUMENT for a function, SAMESTEP_VALUE_OUT_OF_RANGE,
+ * SAMESTEP_IN_USE for a world of samestep_verify. */
 SAMESTEP_C_API samestep_status samestep_session_create(samestep_world* world, const samestep_session_def* def,
                                                        samestep_session** session);
-/* Ends a session on this side, at once; null does nothing. Messages of its calls are the world's. */
+/* Ends a session on this side, at once; null does nothing. From a function that a call of the session has
+ * made, it ends when that call returns. Messages of its calls are the world's. */
 SAMESTEP_C_API void samestep_session_destroy(samestep_session* session);
 
 /* What came of a frame. */
