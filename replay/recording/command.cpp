@@ -103,7 +103,7 @@ struct Applier {
     addShapes(trial, trial.add(c.body), given ? byId(c.shapes) : c.shapes, false);
 
     const BodyId id = given ? space.add(c.body, c.id) : space.add(c.body);
-    Whole whole{space};
+    Whole<S> whole{space};
     addShapes(space, id, c.shapes, given);
     // The velocity is that of the centre of mass, which the shapes have moved.
     if (c.body.type() != BodyType::staticBody) space.body(id).setVelocity(c.body.velocity());
