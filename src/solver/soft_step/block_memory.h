@@ -29,7 +29,7 @@ class BlockMemory {
     // The old room goes first: at its worst this is most of what a step takes.
     capacity_ = 0;
     room_.reset();
-    room_ = std::make_unique_for_overwrite<std::byte[]>(capacity + kAlignment);
+    room_.reset(new std::byte[capacity + kAlignment]);
     for (std::size_t begin = 0; begin < capacity + kAlignment; begin += kClearedAtOnce) {
       const std::size_t left = capacity + kAlignment - begin;
       std::memset(room_.get() + begin, 0, left < kClearedAtOnce ? left : kClearedAtOnce);
