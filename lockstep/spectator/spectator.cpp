@@ -245,7 +245,8 @@ void Spectator::Impl::takeBlock(PacketReader& reader) {
     bytes.assign(size, 0);
   }
   if (state != State::joining || block != blocks) return;
-  std::copy(piece.begin(), piece.end(), bytes.begin() + std::ptrdiff_t{block} * kBlock);
+  std::copy(piece.begin(), piece.end(),
+            bytes.begin() + static_cast<std::ptrdiff_t>(block * std::uint64_t{kBlock}));
   ++blocks;
   if (std::uint64_t{blocks} * kBlock >= size) begin();
 }
