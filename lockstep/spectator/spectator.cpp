@@ -15,6 +15,23 @@ using lockstep::PacketWriter;
 
 namespace {
 
+/// Whether bytes from outside were taken by an action on them. A build without exceptions ends where they are
+/// refused.
+template <class Action>
+bool isTaken(Action&& action) {
+#if defined(__cpp_exceptions)
+  try {
+    const FailuresAreCaught caught;
+    action();
+  } catch (const Error&) {
+    return false;
+  }
+#else
+  action();
+#endif
+  return true;
+}
+
 /// The first byte of a packet.
 enum class Kind : std::uint8_t {
   have = 0x61,    ///< What who watches has: a state, how many blocks of it, inputs up to where.
@@ -253,9 +270,7 @@ void Spectator::Impl::takeBlock(PacketReader& reader) {
 
 /// All of the state is there.
 void Spectator::Impl::begin() {
-  try {
-    load(stateTick, bytes, data);
-  } catch (const Error&) {
+  if (!isTaken([&] { load(stateTick, bytes, data); })) {
     state = State::failed;
     return;
   }
@@ -271,11 +286,9 @@ void Spectator::Impl::takeInputs(PacketReader& reader) {
     if (!reader.good() || entry.size() > kMaxInputsBytes) return;
     const bool next = at++ == known && known - tick < kAhead;
     if (!next) continue;
-    try {
-      if (decodeInputs(entry, players).tick != known) return;
-    } catch (const MalformedBytes&) {
-      return;
-    }
+    bool follows = false;
+    const bool taken = isTaken([&] { follows = decodeInputs(entry, players).tick == known; });
+    if (!taken || !follows) return;
     entries[known++ % kAhead].assign(entry.begin(), entry.end());
   }
 }
