@@ -38,7 +38,7 @@ class ArenaGame : public SimGame {
       const PlayerInput& player = inputs.players[seat];
       players[seat].present = player.present && !player.held.empty();
       if (!players[seat].present) continue;
-      buttons[seat] = static_cast<std::uint8_t>(Random::mix(player.held[0] + 256u * seat) & 31);
+      buttons[seat] = static_cast<std::uint8_t>(lockstep::mix(player.held[0] + 256u * seat) & 31);
       players[seat].held = {&buttons[seat], 1};
       // The world stays small.
       const bool drops = !player.commands.empty() && player.commands[0] % 8 == 1;

@@ -25,7 +25,7 @@ class IntegerGame : public SimGame {
   void flip() override { value_ ^= 1; }
 
  private:
-  void add(std::uint64_t number) { value_ = Random::mix(value_ + number + 0x9e3779b97f4a7c15u); }
+  void add(std::uint64_t number) { value_ = lockstep::mix(value_ + number + 0x9e3779b97f4a7c15u); }
 
   std::uint64_t value_ = 0;
   std::array<std::uint64_t, 64> saved_{};

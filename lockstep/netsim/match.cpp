@@ -30,7 +30,7 @@ class Match {
  public:
   explicit Match(const MatchOptions& options)
       : options_(options),
-        random_(Random::mix(options.seed) + options.peers),
+        random_(lockstep::mix(options.seed) + options.peers),
         network_(kMaxPlayers + 1, random_.next()) {
     shapeLinks();
     addPeers();

@@ -162,7 +162,7 @@ void Oracle::count(const Oracle::Peers& peers, const Peer& reference) {
   }
   for (Tick tick = 0; tick < reference.certain(); ++tick) {
     const TickRecord& record = reference.records()[tick];
-    report_.trace = Random::mix(report_.trace * 31 + record.inputs + record.state);
+    report_.trace = lockstep::mix(report_.trace * 31 + record.inputs + record.state);
   }
 }
 

@@ -23,7 +23,7 @@ void bytesOf(std::uint32_t value, std::uint8_t* to) {
 
 std::uint64_t digest(const TickInputs& inputs) {
   std::uint64_t value = inputs.tick;
-  const auto add = [&](std::uint64_t next) { value = Random::mix(value * 31 + next); };
+  const auto add = [&](std::uint64_t next) { value = lockstep::mix(value * 31 + next); };
   for (const PlayerInput& player : inputs.players) {
     add(player.present ? 1 : 0);
     add(player.held.size());

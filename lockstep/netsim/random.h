@@ -3,13 +3,15 @@
 
 #include <cstdint>
 
+#include "session/mix.h"
+
 namespace samestep::netsim {
 
 /// SplitMix64: the same numbers from a seed everywhere.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() { return mix(state_ += 0x9e3779b97f4a7c15u); }
+  std::uint64_t next() { return lockstep::mix(state_ += 0x9e3779b97f4a7c15u); }
   /// Below `bound`, which is not 0.
   std::uint32_t below(std::uint32_t bound) {
     return static_cast<std::uint32_t>((next() >> 32) * bound >> 32);
@@ -18,12 +20,6 @@ class Random {
   std::uint32_t within(std::uint32_t least, std::uint32_t most) { return least + below(most - least + 1); }
   /// True so many times in a thousand.
   bool perMille(std::uint32_t chance) { return below(1000) < chance; }
-
-  static std::uint64_t mix(std::uint64_t value) {
-    value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9u;
-    value = (value ^ value >> 27) * 0x94d049bb133111ebu;
-    return value ^ value >> 31;
-  }
 
  private:
   std::uint64_t state_;

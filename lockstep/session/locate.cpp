@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "session/mix.h"
 #include "session/session_impl.h"
 
 namespace samestep {
@@ -15,14 +16,6 @@ constexpr std::uint64_t kAskAgain = 100'000;
 constexpr std::uint64_t kAnswerEvery = 5'000;
 /// A peer that does not answer for so long is asked no more.
 constexpr std::uint64_t kAskFor = 5'000'000;
-
-/// One number from two, such that neither is lost.
-std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
-  std::uint64_t value = a * 0x9e3779b97f4a7c15u + b;
-  value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9u;
-  value = (value ^ value >> 27) * 0x94d049bb133111ebu;
-  return value ^ value >> 31;
-}
 
 /// How many values a part of a level has.
 std::uint64_t valuesOf(std::uint8_t level) { return std::uint64_t{1} << (6 * level); }

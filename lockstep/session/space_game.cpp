@@ -13,16 +13,13 @@
 #include <optional>
 #include <string>
 
-namespace samestep {
-namespace {
+#include "session/mix.h"
 
-/// One number from two, such that neither is lost.
-std::uint64_t mix(std::uint64_t a, std::uint64_t b) {
-  std::uint64_t value = a * 0x9e3779b97f4a7c15u + b;
-  value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9u;
-  value = (value ^ value >> 27) * 0x94d049bb133111ebu;
-  return value ^ value >> 31;
-}
+namespace samestep {
+
+using lockstep::mix;
+
+namespace {
 
 /// Cuts a text to fit.
 void put(const std::string& text, std::span<char> into) {

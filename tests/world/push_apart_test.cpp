@@ -8,23 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include "support/methods.h"
 #include "support/scalars.h"
 #include "support/world.h"
 
 namespace samestep {
 namespace {
-
-/// A solver with what it computes in.
-struct Method {
-  const char* name;
-  SolverKind solver;
-  ContactPrecision precision;
-};
-constexpr Method kMethods[] = {
-    {"accurate", SolverKind::softStep, ContactPrecision::accurate},
-    {"fast", SolverKind::softStep, ContactPrecision::fast},
-    {"impulses", SolverKind::sequentialImpulses, ContactPrecision::accurate},
-};
 
 template <class S>
 class PushApartTest : public ::testing::Test {

@@ -11,23 +11,12 @@
 
 #include <gtest/gtest.h>
 
+#include "support/methods.h"
 #include "support/scalars.h"
 #include "support/world.h"
 
 namespace samestep {
 namespace {
-
-/// A solver with what it computes in, and how exact that is where Fixed computes in less than it has.
-struct Method {
-  const char* name;
-  SolverKind solver;
-  ContactPrecision precision;
-};
-constexpr Method kMethods[] = {
-    {"accurate", SolverKind::softStep, ContactPrecision::accurate},
-    {"fast", SolverKind::softStep, ContactPrecision::fast},
-    {"impulses", SolverKind::sequentialImpulses, ContactPrecision::accurate},
-};
 
 /// What is told of one contact.
 template <class S>
