@@ -13,7 +13,7 @@ namespace samestep {
 template <Scalar S>
 struct ContactCallbacks;
 
-/// Where a pair of shapes stands. MIS: ArbiterState
+/// State of the contact of two shapes. MIS: ArbiterState
 enum class ArbiterState : std::uint8_t {
   apart = 0,           ///< The boxes overlap, the shapes have not touched yet.
   firstCollision = 1,  ///< Touching since this step.
@@ -36,7 +36,7 @@ struct Contact {
   /// state: only callbacks and visits read them.
   S normalTotal{};
   S tangentTotal{};
-  /// Which features touch: tells which point of the last step this one continues.
+  /// Identity of the features that touch; it tells which point of the last step this one continues.
   std::uint32_t feature = 0;
   std::uint32_t unused = 0;
 
@@ -50,7 +50,8 @@ struct Contact {
   }
 };
 
-/// How one body stood to another when their shapes were collided: enough to tell whether it still does.
+/// Pose of one body relative to another when their shapes were collided: enough to tell whether it still
+/// holds.
 struct RelativePose {
   /// Its origin in the other's coordinates, in units of 2^-16 m toward zero, modulo 2^16 m.
   std::int32_t x = 0;
@@ -67,12 +68,11 @@ struct RelativePose {
   }
 };
 
-/// What is known of a pair from the last time it was collided.
+/// Recycling state of a pair: what is known from the last time it was collided.
 enum class Manifold : std::uint8_t {
-  unknown = 0,  ///< Nothing that holds: to be collided in any case.
-  touching =
-      1,      ///< While the bodies stand as in `pose`: normal and points, if they touched in the last step.
-  apart = 2,  ///< While the bodies stand so: that they do not touch.
+  unknown = 0,   ///< Nothing that holds: to be collided in any case.
+  touching = 1,  ///< Normal and points hold while the bodies stand as in `pose`, if they touched last.
+  apart = 2,     ///< The shapes do not touch while the bodies stand as in `pose`.
 };
 
 /// The state of a pair of shapes whose boxes overlap: the lower id is a. A new one stands apart.
@@ -81,28 +81,28 @@ template <Scalar S>
 struct Pair {
   // First what every step asks of every pair: it shares a cache line.
 
-  /// Of the state only the slots: a shape that goes takes its pairs with it.
+  /// The state has only the slots: a shape that goes takes its pairs with it.
   LocalId<ShapeTag> a{};
   LocalId<ShapeTag> b{};
-  /// How the body of the smaller shape stood to the other's when the shapes were collided.
+  /// Pose of the smaller shape's body relative to the other's when the shapes were collided.
   RelativePose pose{};
-  /// Where the closest-feature search of the next step starts.
+  /// Start of the closest-feature search of the next step.
   CollisionId collisionId = 0;
   /// Steps since the shapes last touched, saturated; 0 while they stand apart.
   std::uint32_t age = 0;
   std::uint8_t count = 0;
   ArbiterState state = ArbiterState::apart;
   Manifold manifold = Manifold::unknown;
-  /// Whether this step solves it: touching, wanted by its callbacks, no sensor. No state.
+  /// 1 if this step solves the pair: touching, wanted by its callbacks, no sensor. No state.
   std::uint8_t solved = 0;
-  /// From a to b, a unit vector in the coordinates of a's body.
+  /// Normal from a to b, a unit vector in the coordinates of a's body.
   Vector<S> localNormal{};
   Contact<S> contacts[kMaxContactsPerPair]{};
-  /// For this step, from the shapes or from Arbiter's setters. No state.
+  /// Restitution for this step, from the shapes or from Arbiter's setters. No state.
   S elasticity{};
   S friction{};
   Vector<S> surfaceVelocity{};
-  /// What the solver of the last step did, 0 where nothing was solved. No state: only callbacks and visits
+  /// Result of the solver in the last step, 0 where nothing was solved. No state: only callbacks and visits
   /// read it. The impulse on b, as the change of speed of the lighter body, m/s; along which normal, from a
   /// to b in the world; and how b's body stood turned then (cosine, sine).
   Vector<S> solvedImpulse{};
@@ -154,25 +154,26 @@ class Arbiter {
   S restitution() const { return pair_.elasticity; }
   /// MIS: arbiterGetFriction
   S friction() const { return pair_.friction; }
-  /// Of the surface of B against A, m/s. MIS: arbiterGetSurfaceVelocity
+  /// Velocity of the surface of B against A, m/s. MIS: arbiterGetSurfaceVelocity
   Vector<S> surfaceVelocity() const { return swapped_ ? -pair_.surfaceVelocity : pair_.surfaceVelocity; }
-  /// For this step only; the next collision computes it from the shapes again.
+  /// Sets the restitution for this step only; the next collision computes it from the shapes again.
   /// @throws NegativeElasticity, ValueOutOfRange
   /// MIS: arbiterSetRestitution
   void setRestitution(S restitution);
-  /// For this step only.
+  /// Sets the friction for this step only.
   /// @throws NegativeFriction, ValueOutOfRange
   /// MIS: arbiterSetFriction
   void setFriction(S friction);
-  /// For this step only.
+  /// Sets the surface velocity for this step only.
   /// @throws ValueOutOfRange
   /// MIS: arbiterSetSurfaceVelocity
   void setSurfaceVelocity(const Vector<S>& velocity);
 
-  /// How many points touch: 1 or 2, or 0 in separate. MIS: arbiterGetCount
+  /// Number of contact points: 1 or 2, or 0 in separate. MIS: arbiterGetCount
   int count() const { return pair_.state == ArbiterState::cached ? 0 : pair_.count; }
-  /// From A to B, a unit vector: in postSolve and in visits between steps the one that the solver pushed
-  /// along, before that the one the shapes were collided with, which follows A. MIS: arbiterGetNormal
+  /// Contact normal from A to B, a unit vector: in postSolve and in visits between steps the one that the
+  /// solver pushed along, before that the one the shapes were collided with, which follows A. MIS:
+  /// arbiterGetNormal
   Vector<S> normal() const;
   /// On the surface of A, world coordinates, m: it goes where A goes since the shapes were last collided, and
   /// stands where A stands now; where A is rounded, it stays on the side towards the normal, however A turns.
@@ -182,7 +183,7 @@ class Arbiter {
   /// @throws ContactIndexOutOfBounds
   /// MIS: arbiterGetPointB
   Vector<S> pointB(int index) const;
-  /// Along the normal, where the bodies stand now, m; negative where the shapes overlap.
+  /// Separation along the normal, where the bodies stand now, m; negative where the shapes overlap.
   /// @throws ContactIndexOutOfBounds
   /// MIS: arbiterGetDepth
   S depth(int index) const;
@@ -194,9 +195,9 @@ class Arbiter {
   /// MIS: arbiterSetContactPointSet
   void setContactPointSet(const ContactPointSet<S>& set);
 
-  /// Whether the shapes began to touch in this step. MIS: arbiterIsFirstContact
+  /// True if the shapes began to touch in this step. MIS: arbiterIsFirstContact
   bool isFirstContact() const { return pair_.state == ArbiterState::firstCollision; }
-  /// Whether separate is called because a shape is being removed. MIS: arbiterIsRemoval
+  /// True if separate is called because a shape is being removed. MIS: arbiterIsRemoval
   bool isRemoval() const { return removal_; }
   /// Lets the shapes pass through each other until they separate. Returns false, so that a callback can end
   /// with it. MIS: arbiterIgnore
@@ -211,7 +212,7 @@ class Arbiter {
   /// step until it is solved, so in begin, preSolve and separate, and 0 after a restore or load until the
   /// next step. MIS: arbiterTotalImpulse
   Vector<S> totalImpulse() const;
-  /// As in Chipmunk, the sum over the points of jn^2 / nMass (1 - e) / (1 + e) + jt^2 / tMass: twice what an
+  /// Sum over the points of jn^2 / nMass (1 - e) / (1 + e) + jt^2 / tMass, as in Chipmunk: twice what an
   /// impact takes from the kinetic energy, J, saturated; 0 where nothing was solved.
   /// @throws UnsolvableCollision if nothing moves either body any more
   /// MIS: arbiterTotalKE
@@ -224,7 +225,7 @@ class Arbiter {
   friend struct ContactCallbacks<S>;
 
   bool isSolved() const { return pair_.solvedNormal != Vector<S>(); }
-  /// From the first body of the pair to the second.
+  /// Normal from the first body of the pair to the second.
   Vector<S> pairNormal() const;
   /// On the surface of the first or the second body.
   Vector<S> surfacePoint(int body, int index) const;

@@ -37,13 +37,13 @@ struct BB {
   friend constexpr bool operator==(const BB&, const BB&) = default;
 };
 
-/// Whether the boxes share a point; touching counts. MIS: BBIntersects
+/// True if the boxes share a point; touching counts. MIS: BBIntersects
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr bool intersects(const BB<S>& a, const BB<S>& b) {
   return a.left <= b.right && b.left <= a.right && a.bottom <= b.top && b.bottom <= a.top;
 }
 
-/// Whether `inner` lies in `outer`, edges included. MIS: BBContainsBB
+/// True if `inner` lies in `outer`, edges included. MIS: BBContainsBB
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr bool contains(const BB<S>& outer, const BB<S>& inner) {
   return outer.left <= inner.left && inner.right <= outer.right && outer.bottom <= inner.bottom &&

@@ -46,7 +46,7 @@ class BBTree final : public SpatialIndex<S> {
     placeMoving(key, tight, velocity);
     return true;
   }
-  /// The same for an object that rests: its room is the tight box.
+  /// Updates an object that rests: its room is the tight box.
   [[gnu::always_inline]] bool update(IndexKey key, const BB<S>& tight) {
     if (key < rooms_.size() && rooms_[key] == tight) return false;
     place(key, tight);
@@ -77,7 +77,7 @@ class BBTree final : public SpatialIndex<S> {
   /// Takes over objects, pairs and margin of another tree, for a saved world: not the functions, nor the
   /// static index, whose content must be taken over as well.
   void copyFrom(const BBTree& other);
-  /// That copyFrom copies.
+  /// Bytes that copyFrom copies.
   std::uint64_t bytes() const;
   const BoxTree& boxes() const { return tree_; }
 
@@ -90,7 +90,7 @@ class BBTree final : public SpatialIndex<S> {
   void remove(IndexKey object) override;
   void reindex() override;
   void reindexObject(IndexKey object) override;
-  /// Against the fat boxes.
+  /// Searches the fat boxes.
   void query(IndexKey object, const BB<S>& box, QueryFunc found, void* context) const override;
   /// A static tree's own pairs are not kept between calls.
   void reindexQuery(QueryFunc found, void* context) override;
@@ -113,10 +113,10 @@ class BBTree final : public SpatialIndex<S> {
   BBTree* staticTree() const;
 
   BoxTree tree_;
-  /// By key: where the tight box may be without its leaf being placed anew; a box that holds nothing if the
-  /// object is not here.
+  /// Room of each key: where the tight box may be without its leaf being placed anew; a box that holds
+  /// nothing if the object is not here.
   std::vector<BB<S>> rooms_;
-  /// By key: kMovedHere, kMovedInStatic.
+  /// Changes of each key: kMovedHere, kMovedInStatic.
   std::vector<std::uint8_t> changes_;
   std::vector<IndexKey> changed_;  ///< The keys with kMovedHere, each once.
   std::vector<KeyPair> pairs_;

@@ -15,7 +15,7 @@ class Space;
 template <Scalar S>
 struct BodyAccess;
 
-/// What moves a body. MIS: BodyType, with Chipmunk's kinematic bodies.
+/// Kind of motion of a body. MIS: BodyType, with Chipmunk's kinematic bodies.
 enum class BodyType : std::uint8_t {
   dynamicBody = 0,    ///< Forces, gravity and contacts.
   kinematicBody = 1,  ///< Only its own velocity; pushes dynamic bodies, is pushed by nothing.
@@ -25,7 +25,7 @@ enum class BodyType : std::uint8_t {
 /// Names a position or velocity function registered with the Space; 0 is the built-in one.
 using CallbackNumber = std::uint32_t;
 
-/// What all shapes of a body weigh together.
+/// Mass, centre and moment of all shapes of a body together.
 template <Scalar S>
 struct MassProperties {
   S mass{};
@@ -68,7 +68,7 @@ class Body {
   /// MIS: bodyGetType
   BodyType type() const { return type_; }
   bool isDynamic() const { return type_ == BodyType::dynamicBody; }
-  /// Whether contacts may turn it.
+  /// True if contacts may turn the body.
   bool rotates() const { return rotates_ != 0; }
 
   /// Turns a free body into another type, which forgets the bias velocities. A static body loses its
@@ -84,7 +84,7 @@ class Body {
   Scaled<S> inverseMass() const { return inverseMass_; }
   /// kg m^2 about the centre of mass, saturated. MIS: bodyGetMoment
   S moment() const;
-  /// The same at full range and precision.
+  /// Moment at full range and precision.
   Scaled<S> exactMoment() const { return isDynamic() ? moment_ : Scaled<S>{}; }
   /// 1/(kg m^2), 0 where nothing turns it.
   Scaled<S> inverseMoment() const { return inverseMoment_; }
@@ -94,7 +94,7 @@ class Body {
   /// @throws StaticBodyMass, NaNMass, NegativeMass, InfiniteMass, MassOutOfRange
   /// MIS: bodySetMass
   void setMass(S mass);
-  /// Also makes a body rotate that did not.
+  /// Sets the moment; a body that did not rotate does from here on.
   /// @throws StaticBodyMass, NaNMoment, NegativeMoment, InfiniteMoment, MomentOutOfRange
   /// MIS: bodySetMoment
   void setMoment(S moment);
@@ -106,7 +106,7 @@ class Body {
 
   /// The place of the body's origin, m. MIS: bodyGetPosition
   Vector<S> position() const {
-    // The same bits where zero has no sign.
+    // The product has the same bits where zero has no sign.
     if constexpr (FixedNumber<S>) {
       if (centerOfMass_ == Vector<S>()) return center_;
     }
@@ -116,7 +116,7 @@ class Body {
   const Vector<S>& worldCenter() const { return center_; }
   /// The centre of mass in body coordinates, m. MIS: bodyGetCenterOfMass
   const Vector<S>& centerOfMass() const { return centerOfMass_; }
-  /// Of the centre of mass, m/s. MIS: bodyGetVelocity
+  /// Velocity of the centre of mass, m/s. MIS: bodyGetVelocity
   const Vector<S>& velocity() const { return velocity_; }
   /// Acts on the centre of mass in the next step, which clears it, N. MIS: bodyGetForce
   const Vector<S>& force() const { return force_; }
@@ -128,10 +128,11 @@ class Body {
   S angularVelocity() const { return angularVelocity_; }
   /// N m; see force. MIS: bodyGetTorque
   S torque() const { return torque_; }
-  /// From body to world coordinates.
+  /// Transform from body to world coordinates.
   Transform<S> transform() const { return Transform<S>::rigid(position(), rotation_); }
 
-  /// Also forgets the bias velocities: what pushed it out of an overlap is not to move it on from there.
+  /// Moves the body and forgets the bias velocities: what pushed it out of an overlap is not to move it on
+  /// from there.
   /// @throws IllegalBody outside the world
   /// MIS: bodySetPosition
   void setPosition(const Vector<S>& position);
@@ -178,7 +179,7 @@ class Body {
   /// nothing to a body that is not dynamic.
   /// @throws IllegalBody for an impulse that is not finite
   void applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint);
-  /// The same for the bias velocities.
+  /// Applies an impulse to the bias velocities.
   /// @throws IllegalBody for an impulse that is not finite
   void applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint);
   /// A force in N at a world point is added to force and torque.
@@ -195,17 +196,17 @@ class Body {
   ///         step's velocity function it is held at them
   /// MIS: bodyUpdateVelocity
   void updateVelocity(const Vector<S>& gravity, S dt) { updateVelocity(gravity, S(1), dt); }
-  /// The same with the velocities first multiplied by `damping`, in [0, 1].
+  /// Updates the velocities after multiplying them by `damping`, in [0, 1].
   void updateVelocity(const Vector<S>& gravity, S damping, S dt);
 
   /// (m v^2 + I w^2) / 2, J, saturated. MIS: bodyKineticEnergy
   S kineticEnergy() const;
 
-  /// What the solver adds to the velocities only to push overlapping shapes apart, m/s and rad/s.
+  /// Bias velocity: what the solver adds only to push overlapping shapes apart, m/s and rad/s.
   const Vector<S>& velocityBias() const { return velocityBias_; }
   S angularVelocityBias() const { return angularVelocityBias_; }
 
-  /// What had to be held at its limit, as bits.
+  /// Values that were clamped to their limits, as bits.
   enum Held : std::uint8_t { kHeldNothing = 0, kHeldSpeed = 1, kHeldSpin = 2, kHeldAtBorder = 4 };
 
   /// Every field of the state, by name, in the order of the canonical encoding.
@@ -230,7 +231,7 @@ class Body {
   }
   /// Computes what follows from the fields.
   void derive();
-  /// Whether the record could have been made by the functions of this library: for what was read from
+  /// True if the record could have been made by the functions of this library: for what was read from
   /// outside.
   bool wellFormed() const;
 
@@ -241,25 +242,25 @@ class Body {
     Vector<S> velocity;
     S angularVelocity;
   };
-  /// What an impulse at a world point adds to the velocities; nothing where the body is not dynamic.
+  /// Change of the velocities by an impulse at a world point; none where the body is not dynamic.
   Motion pushed(const Vector<S>& impulse, const Vector<S>& worldPoint) const;
   /// The velocities after gravity, force and torque, unchecked.
   Motion accelerated(const Vector<S>& gravity, S damping, S dt) const;
-  /// What gravity, force and torque do to the velocities, per second.
+  /// Acceleration by gravity, force and torque, per second.
   Motion acceleration(const Vector<S>& gravity) const;
   /// Moves the centre of mass within the body, whose material moves on as before.
   void moveCenter(const Vector<S>& center);
   /// Computes what follows from type, mass and moment.
   void deriveMass();
-  /// Of a body that is not dynamic: its mass is to be summed over its shapes when it becomes so.
+  /// Makes the mass of a body that is not dynamic be summed over its shapes when it becomes so.
   void forgetMass();
   void forgetBias();
-  /// Why the body cannot be stepped, or nullptr.
+  /// Reason why the body cannot be stepped, or nullptr.
   const char* cannotStep() const;
   /// Takes the velocities, held at the limits; says what was held.
   std::uint8_t holdVelocity(const Motion& motion);
-  /// While it lives, updatePosition and updateVelocity hold what leaves its range, and note it, instead of
-  /// throwing: for the functions a step calls.
+  /// Lets updatePosition and updateVelocity clamp what leaves its range, and note it, instead of throwing,
+  /// while it lives: for the functions a step calls.
   class WithinStep {
    public:
     WithinStep(Body& body, std::uint8_t& held) : body_(body), held_(held) {
@@ -301,13 +302,13 @@ class Body {
   Scaled<S> inverseMass_{};
   Scaled<S> inverseMoment_{};
   S momentPerMass_{};
-  // Which Space it belongs to, as which object, and how far from the origin it may be set there: given by the
-  // Space, not part of the state.
+  // The Space gives its own number, the slot and how far from the origin the body may be set; none of them is
+  // part of the state.
   S extent_ = kMaxWorldExtent<S>;
   BodyId id_{};
   BodyType type_ = BodyType::dynamicBody;
   std::uint8_t rotates_ = 1;
-  // Of a call from within a step.
+  // This is 1 during a call from within a step.
   std::uint8_t stepping_ = 0;
   std::uint8_t held_ = 0;
 };

@@ -33,11 +33,11 @@ struct GridBox {
 /// A thick segment on the grid, for queries. `overlaps` may report a box that it misses by a few units, but
 /// never misses one that it touches.
 struct GridSegment {
-  GridBox bounds;     ///< Of the segment and its thickness.
+  GridBox bounds;     ///< Box of the segment and its thickness.
   std::int32_t x[2];  ///< The ends, rounded down.
   std::int32_t y[2];
   std::int32_t reach;  ///< Half the thickness, rounded up.
-  bool endsOnGrid;     ///< Whether no end was clamped; otherwise only the bounds count.
+  bool endsOnGrid;     ///< True if no end was clamped; otherwise only the bounds count.
 };
 bool overlaps(const GridSegment& segment, const GridBox& box);
 
@@ -54,7 +54,7 @@ class BoxTree {
   static constexpr Ref kNone = 0x7fffffffu;
   /// Keys are below this: they index arrays.
   static constexpr Key kMaxKeys = 1u << 24;
-  /// What would be higher is put in elsewhere, or the tree is rebuilt.
+  /// Height limit: what would be higher is put in elsewhere, or the tree is rebuilt.
   static constexpr std::uint32_t kMaxHeight = 60;
 
   explicit BoxTree(std::uint32_t maxLeaves = kMaxKeys);
@@ -76,13 +76,13 @@ class BoxTree {
   void insert(Key key, const GridBox& box);
   /// Takes out a key that is there. O(height).
   void remove(Key key);
-  /// As remove and insert, but cheaper for a small move.
+  /// Does what remove and insert do, but cheaper for a small move.
   void move(Key key, const GridBox& box);
   void clear();
 
   /// A balanced tree from the same leaves: for tests, and after many changes. O(n log n)
   void rebuild();
-  /// How often the tree was built anew, by itself or by a call.
+  /// Number of times the tree was built anew, by itself or by a call.
   std::uint64_t rebuilds() const { return rebuilds_; }
 
   /// Calls visit(key) for every leaf whose box overlaps the area (GridBox or GridSegment), in any order.
@@ -111,7 +111,7 @@ class BoxTree {
 
   /// The top node, a leaf, or kNone.
   Ref root() const { return nodes_[kAnchor].child[0]; }
-  /// What hangs on a side, 0 or 1, of a node.
+  /// Child on a side, 0 or 1, of a node.
   Ref child(Ref node, int side) const {
     expects(node < nodes_.size() && (side == 0 || side == 1));
     return nodes_[node].child[side];
@@ -119,13 +119,13 @@ class BoxTree {
   /// Hangs `value` where `child` was and refits all boxes above.
   /// @throws LeafError if parent is a leaf, InvalidChild if child does not hang there
   void replaceChild(Ref parent, Ref child, Ref value);
-  /// Of memory that a copy takes.
+  /// Bytes of memory that a copy takes.
   std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + places_.size() * sizeof(Place); }
-  /// Whether boxes, heights, links and counts agree with each other.
+  /// True if boxes, heights, links and counts agree with each other.
   bool valid() const;
 
  private:
-  /// Which side of which node: node << 1 | side.
+  /// A side of a node: node << 1 | side.
   using Place = std::uint32_t;
 
   struct Node {
@@ -146,10 +146,10 @@ class BoxTree {
 
   static Node emptyNode();
 
-  /// What a search has still to look into, and what it has found. Whether a box overlaps is as good as
+  /// State of a search: nodes still to look into, and keys found. Whether a box overlaps is as good as
   /// random, so a child is noted in any case, and kept by counting it.
   struct Search {
-    // With room for what is noted and not kept.
+    // There is room for what is noted and not kept.
     Ref open[2 * kStackSize + 1];
     Ref found[2 * kStackSize + 1];
     std::uint32_t depth = 0;
@@ -203,7 +203,7 @@ class BoxTree {
   bool validBelow(Ref node, std::uint32_t& leaves) const;
 
   std::vector<Node> nodes_;
-  std::vector<Place> places_;  ///< Of each key's leaf; kNone if there is none.
+  std::vector<Place> places_;  ///< Place of each key's leaf; kNone if there is none.
   Ref freeNodes_ = kNone;      ///< Linked by child[0].
   std::uint32_t count_ = 0;
   std::uint32_t maxLeaves_;

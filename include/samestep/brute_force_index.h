@@ -23,7 +23,7 @@ class BruteForceIndex final : public SpatialIndex<S> {
   void remove(IndexKey object) override;
   void reindex() override;
   void reindexObject(IndexKey object) override;
-  /// By rising key.
+  /// Reports by rising key.
   void query(IndexKey object, const BB<S>& box, QueryFunc found, void* context) const override;
   void reindexQuery(QueryFunc found, void* context) override;
 
@@ -33,7 +33,7 @@ class BruteForceIndex final : public SpatialIndex<S> {
     BB<S> box;
   };
 
-  std::vector<Entry> entries_;  ///< By rising key.
+  std::vector<Entry> entries_;  ///< Sorted by rising key.
 };
 
 #define SAMESTEP_EACH_SCALAR extern template class BruteForceIndex<S>;

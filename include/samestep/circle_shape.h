@@ -54,14 +54,14 @@ class CircleShape : public ConstCircleShape<S> {
 /// 60 bits. Any finite radii.
 template <Scalar S>
 Scaled<S> scaledMomentForCircle(Scaled<S> mass, S innerRadius, S outerRadius, const Vector<S>& offset);
-/// The same, saturating. MIS: momentForCircle
+/// Moment of a circle, saturating. MIS: momentForCircle
 template <Scalar S>
 S momentForCircle(S mass, S innerRadius, S outerRadius, const Vector<S>& offset);
 
 /// m^2 between two circles.
 template <Scalar S>
 Scaled<S> scaledAreaForCircle(S innerRadius, S outerRadius);
-/// The same, saturating. MIS: areaForCircle
+/// Area of a circle, saturating. MIS: areaForCircle
 template <Scalar S>
 S areaForCircle(S innerRadius, S outerRadius);
 

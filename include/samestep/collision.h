@@ -37,13 +37,14 @@ struct CollisionPoint {
   std::uint32_t hash = 0;
 };
 
-/// How two shapes touch; count 0 where they do not, and the normal then says nothing.
+/// Manifold: the points in which two shapes touch; count 0 where they do not, and the normal then says
+/// nothing.
 template <Scalar S>
 struct CollisionInfo {
   Vector<S> normal;  ///< Unit, from the first shape to the second.
   CollisionPoint<S> points[kMaxContactsPerPair];
   std::int32_t count = 0;
-  CollisionId id = 0;  ///< Where to start the next search for the same pair in the same order.
+  CollisionId id = 0;  ///< Start of the next search for the same pair in the same order.
 
   /// @throws CollisionContactOverflow
   void push(const Vector<S>& pointA, const Vector<S>& pointB, std::uint32_t hash) {
@@ -80,7 +81,7 @@ struct ContactPoint {
   S distance{};  ///< Metres along the normal; negative where they overlap.
 };
 
-/// How two shapes touch, as the user sees it. MIS section 7, ContactPointSet.
+/// Manifold of two shapes, as the user sees it. MIS section 7, ContactPointSet.
 template <Scalar S>
 struct ContactPointSet {
   std::int32_t count = 0;
@@ -88,7 +89,7 @@ struct ContactPointSet {
   ContactPoint<S> points[kMaxContactsPerPair];
 };
 
-/// Whether and how two shapes under two rigid poses touch, outside of any Space. Filters do not count.
+/// Collides two shapes under two rigid poses, outside of any Space. Filters do not count.
 /// MIS: shapesCollide
 template <Scalar S>
 ContactPointSet<S> shapesCollide(const Shape<S>& a, const Transform<S>& poseA, const Shape<S>& b,
@@ -114,7 +115,7 @@ void applyImpulse(Body<S>& body, const Vector<S>& impulse, const Vector<S>& arm)
 template <Scalar S>
 void applyImpulses(Body<S>& a, Body<S>& b, const Vector<S>& armA, const Vector<S>& armB,
                    const Vector<S>& impulse);
-/// The same for the velocities that only push overlapping shapes apart.
+/// Applies an impulse to the velocities that only push overlapping shapes apart.
 /// @throws IllegalBody, as applyImpulse
 /// MIS: apply_bias_impulse
 template <Scalar S>
@@ -125,7 +126,8 @@ template <Scalar S>
 void applyBiasImpulses(Body<S>& a, Body<S>& b, const Vector<S>& armA, const Vector<S>& armB,
                        const Vector<S>& impulse);
 
-/// How fast, in m/s, an impulse of 1 N s along a unit vector moves the end of an arm along it, 1/kg.
+/// Inverse mass along an axis: the speed, in m/s, that an impulse of 1 N s along a unit vector gives the end
+/// of an arm along it, 1/kg.
 /// MIS: k_scalar_body
 template <Scalar S>
 Scaled<S> inverseMassAlong(const Body<S>& body, const Vector<S>& arm, const Vector<S>& axis);

@@ -8,7 +8,7 @@
 
 namespace samestep {
 
-/// What kind of thing a shape is to the collision handlers; the user's own numbering. MIS section 8.
+/// Kind of thing a shape is to the collision handlers; the user's own numbering. MIS section 8.
 using CollisionType = std::uint32_t;
 /// In a collision handler: any type. It is also the type a new shape has.
 inline constexpr CollisionType kWildcardCollisionType = 0;
@@ -26,13 +26,13 @@ template <Scalar S>
   return clamp(x, S(0), S(1));
 }
 
-/// From a (t = 0) to b (t = 1), both ends exact; t may lie outside [0, 1]. MIS: flerp
+/// Interpolates from a (t = 0) to b (t = 1), both ends exact; t may lie outside [0, 1]. MIS: flerp
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr S lerp(S a, S b, S t) {
   return dot(a, S(1) - t, b, t);
 }
 
-/// From a towards b by no more than `step` >= 0. MIS: flerpconst
+/// Moves from a towards b by no more than `step` >= 0. MIS: flerpconst
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr S lerpConst(S a, S b, S step) {
   return a + clamp(b - a, -step, step);

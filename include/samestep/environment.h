@@ -7,9 +7,9 @@
 namespace samestep {
 
 #ifndef SAMESTEP_FIXED_ONLY
-/// Why this thread does not compute with double as IEEE-754 does by default, or null: another rounding mode,
-/// or subnormal numbers taken for zero. A library may have set either behind the program's back: one linked
-/// with -ffast-math does. Costs a few operations.
+/// Reason why this thread does not compute with double as IEEE-754 does by default, or null: another rounding
+/// mode, or subnormal numbers taken for zero. A library may have set either behind the program's back: one
+/// linked with -ffast-math does. Costs a few operations.
 const char* doubleFlaw();
 #endif
 

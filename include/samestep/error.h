@@ -69,14 +69,14 @@ enum class Fault : std::uint8_t {
   LeftMidway,  ///< The world of a Space in which an exception ended a change midway; see Space::isUsable.
 };
 
-/// How many faults there are.
+/// Number of faults.
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::LeftMidway) + 1;
 
 /// The sentence of a fault that is told without values: the MIS's own where it has one. MIS: message
 const char* message(Fault fault);
 
-/// Of which the text of an error is put together: a text that lives as long as the expression it stands in, a
-/// number, a vector or an id. Numbers are written as formatDecimal does, the same on every machine.
+/// Part of the text of an error: a text that lives as long as the expression it stands in, a number, a vector
+/// or an id. Numbers are written as formatDecimal does, the same on every machine.
 class ErrorPart {
  public:
   ErrorPart(const char* text) noexcept : kind_(Kind::text), text_(text) {}
@@ -88,14 +88,14 @@ class ErrorPart {
 #ifndef SAMESTEP_FIXED_ONLY
   ErrorPart(double number) noexcept : kind_(Kind::number), x_(bitsOf(number)) {}
 #endif
-  /// Of a fixed-point number.
+  /// Takes a fixed-point number.
   template <class T>
   requires requires(const T& x) {
     x.raw();
     T::kBits;
   }
   ErrorPart(const T& x) noexcept : kind_(Kind::number), fractionBits_(T::kBits), x_(x.raw()) {}
-  /// Of a vector: "(x, y)".
+  /// Takes a vector: "(x, y)".
   template <class T>
   requires requires(const T& v) {
     v.x;
@@ -105,7 +105,7 @@ class ErrorPart {
     kind_ = Kind::vector;
     y_ = ErrorPart(v.y).x_;
   }
-  /// Of an id: "3 (generation 1)", or "none".
+  /// Takes an id: "3 (generation 1)", or "none".
   template <class T>
   requires requires(const T& id) {
     id.index;
@@ -124,7 +124,7 @@ class ErrorPart {
   char* writeNumber(char* to, const char* end, std::int64_t bits) const noexcept;
 
   Kind kind_;
-  int fractionBits_ = -1;  // Of a fixed-point number.
+  int fractionBits_ = -1;  // Fraction bits of a fixed-point number.
   const char* text_ = nullptr;
   std::int64_t x_ = 0;
   std::int64_t y_ = 0;
@@ -134,12 +134,12 @@ class ErrorPart {
 /// what() holds as long as the error, and making one takes no memory and throws nothing.
 class Error : public std::exception {
  public:
-  /// How many bytes the text of an error has at most, its end included.
+  /// Bytes the text of an error has at most, its end included.
   static constexpr std::size_t kTextBytes = 256;
 
   Error(Fault fault, std::initializer_list<ErrorPart> text) noexcept;
   Fault fault() const { return fault_; }
-  /// What was asked for, with which value, and what is allowed.
+  /// Text that says what was asked for, with which value, and what is allowed.
   const char* what() const noexcept override { return text_; }
 
  private:
@@ -217,7 +217,7 @@ class FormatError : public MalformedBytes {
   FormatError(std::uint64_t offset, const char* reason) noexcept : MalformedBytes(reason), offset_(offset) {}
   FormatError(std::uint64_t offset, std::initializer_list<ErrorPart> reason) noexcept
       : MalformedBytes(reason), offset_(offset) {}
-  /// Of the first byte of what is wrong.
+  /// Offset of the first byte of what is wrong.
   std::uint64_t offset() const { return offset_; }
 
  private:
@@ -228,9 +228,9 @@ class FormatError : public MalformedBytes {
 class RevisionError : public FormatError {
  public:
   RevisionError(std::uint64_t offset, std::uint32_t found, std::uint32_t own) noexcept;
-  /// Of the build that made the bytes.
+  /// Revision of the build that made the bytes.
   std::uint32_t found() const { return found_; }
-  /// Of this build.
+  /// Revision of this build.
   std::uint32_t own() const { return own_; }
 
  private:
@@ -274,13 +274,14 @@ template <Fault F, class... Parts>
 /// Throws a RevisionError, as failAs does.
 [[noreturn]] void failRevision(std::uint64_t offset, std::uint32_t found, std::uint32_t own);
 
-/// Called with the fault before anything is thrown, or before a library without exceptions aborts; its text
-/// lasts as long as the call. A game built without exceptions gets no other chance: what is thrown ends it.
-/// What the library catches itself, as while it reads bytes, is told once, as what it becomes. Default: none.
+/// Failure handler: it is called with the fault before anything is thrown, or before a library without
+/// exceptions aborts; its text lasts as long as the call. A game built without exceptions gets no other
+/// chance: what is thrown ends it. What the library catches itself, as while it reads bytes, is told once, as
+/// what it becomes. Default: none.
 using FailureHandler = void (*)(Fault, const char* text);
 void setFailureHandler(FailureHandler handler);
 
-/// While one lives, this thread's failures are somebody's who catches them: the failure handler is not asked.
+/// Tells, while it lives, that somebody catches this thread's failures: the failure handler is not asked.
 class FailuresAreCaught {
  public:
   FailuresAreCaught() noexcept;

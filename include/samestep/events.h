@@ -10,7 +10,7 @@
 
 namespace samestep {
 
-/// What a collision handler does. A null function does what the wildcard handlers of both shapes do, or
+/// Functions of a collision handler. A null function does what the wildcard handlers of both shapes do, or
 /// nothing. begin and preSolve answer whether the shapes shall collide: begin for as long as they touch,
 /// preSolve for this step. What they throw comes out of the step or removal and leaves the world midway, see
 /// Space; so it is with the functions and the observer below.
@@ -31,10 +31,10 @@ struct CollisionHandler {
   void* data = nullptr;
 };
 
-/// What moves a body in place of its velocity. MIS: bodySetPositionFunc
+/// Function that moves a body in place of its velocity. MIS: bodySetPositionFunc
 template <Scalar S>
 using BodyPositionFunc = void (*)(Body<S>& body, S dt, void* data);
-/// What changes a body's velocity in place of gravity, force and torque. MIS: bodySetVelocityFunc
+/// Function that changes a body's velocity in place of gravity, force and torque. MIS: bodySetVelocityFunc
 template <Scalar S>
 using BodyVelocityFunc = void (*)(Body<S>& body, const Vector<S>& gravity, S damping, S dt, void* data);
 
@@ -65,27 +65,28 @@ struct ImpactEvent {
   BodyId bodyA;
   BodyId bodyB;
   Vector<S> point{};   ///< On the surface of A, of the contact point that approached fastest, m.
-  Vector<S> normal{};  ///< From A to B, a unit vector.
+  Vector<S> normal{};  ///< Unit vector from A to B.
   S speed{};           ///< At which it approached when the step began, m/s.
-  S impulse{};         ///< Along the normal on B, of all points in the step, N s, saturated.
+  S impulse{};         ///< Impulse along the normal on B, of all points in the step, N s, saturated.
 
   friend constexpr bool operator==(const ImpactEvent&, const ImpactEvent&) = default;
 };
 
-/// What a Space lists of contacts: nothing at first, which costs nothing.
+/// Contact events that a Space lists: none at first, which costs nothing.
 template <Scalar S>
 struct EventListing {
-  bool contacts = false;  ///< What began to touch and what ceased to.
+  bool contacts = false;  ///< Lists contacts that began and that ended.
   bool impacts = false;
   S slowestImpact{1};  ///< Slower impacts are not listed, m/s, 0 to 2^11.
 };
 
-/// What the last step listed, by rising ids of A and B.
+/// Contact events of the last step, by rising ids of A and B.
 template <Scalar S>
 struct ContactEvents {
   std::uint64_t tick = 0;  ///< Space::stamp() after that step; 0 where none has been listed.
   std::span<const ContactEvent> begins;
-  /// Those that calls between the steps brought about as well: a shape removed, contacts filtered.
+  /// Contacts that ended, those included that calls between the steps ended: a shape removed, contacts
+  /// filtered.
   std::span<const ContactEvent> ends;
   std::span<const ImpactEvent<S>> impacts;
 };
@@ -104,7 +105,7 @@ enum class Stage : std::uint8_t {
 };
 const char* stageName(Stage stage);
 
-/// Called after each stage of a step.
+/// Function that is called after each stage of a step.
 template <Scalar S>
 using StageObserverFunc = void (*)(const Space<S>& space, Stage stage, void* data);
 

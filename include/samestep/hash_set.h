@@ -46,7 +46,7 @@ class HashSet {
     if (size > 0) reindex(bucketsFor(size));
   }
 
-  /// What find and remove return for an element that is not there; T() unless set.
+  /// Value that find and remove return for an element that is not there; T() unless set.
   /// MIS: hashSetSetDefaultValue
   void setDefaultValue(T value) { default_ = std::move(value); }
   const T& defaultValue() const { return default_; }
@@ -68,7 +68,7 @@ class HashSet {
     ++count_;
     return bins_.back().element;
   }
-  /// The same with the key itself as the new element.
+  /// Inserts the key itself as the new element.
   T& insert(HashValue hash, const T& key) {
     return insert(hash, key, [](const T& element) { return element; });
   }

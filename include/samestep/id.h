@@ -17,15 +17,15 @@ struct Id {
 
   std::uint32_t index = kNoIndex;
   std::uint32_t generation = 0;
-  /// Whose id it is, so that a Space can refuse that of another: a number that a Space takes when it is made,
-  /// and that goes with its world where that is restored, also in another Space. 0: anybody's. It differs
-  /// from run to run, and so it is no part of what is compared, hashed, saved or sent.
+  /// Number of the Space whose id it is, so that a Space can refuse that of another: a Space takes it when it
+  /// is made, and it goes with its world where that is restored, also in another Space. 0: anybody's. It
+  /// differs from run to run, and so it is no part of what is compared, hashed, saved or sent.
   std::uint32_t space = 0;
 
-  /// Whether this is some object's id; whether the object still exists only its Space knows.
+  /// True if this is some object's id; whether the object still exists only its Space knows.
   constexpr bool valid() const { return index != kNoIndex; }
-  /// The same as anybody's: for who does the same in several Spaces, as a game whose inputs are also applied
-  /// while a recording of it is replayed. The caller answers for it naming the right object.
+  /// Id of the same object in any Space: for who does the same in several Spaces, as a game whose inputs are
+  /// also applied while a recording of it is replayed. The caller answers for it naming the right object.
   constexpr Id anywhere() const { return fromBits(bits()); }
   /// Slot and generation in one number, for keeping and sending.
   constexpr std::uint64_t bits() const { return std::uint64_t{generation} << 32 | index; }

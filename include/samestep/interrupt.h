@@ -3,7 +3,7 @@
 
 namespace samestep {
 
-/// Who is asked, now and then, whether a long call shall end: by default nobody.
+/// Function that is asked, now and then, whether a long call shall end: by default none.
 struct Interrupt {
   /// True ends it. It must not call anything of what it is asked about, and not throw.
   bool (*wanted)(void* data) = nullptr;

@@ -6,15 +6,15 @@
 
 namespace samestep {
 
-/// Which processor instructions the soft step solves contacts with. All give the same bits.
+/// Processor instructions with which the soft step solves contacts. All give the same bits.
 enum class KernelTarget : std::uint8_t {
   /// The last of availableKernels().
   best = 0,
-  /// What every processor of the architecture has.
+  /// Uses what every processor of the architecture has.
   portable = 1,
   sse42 = 2,
   avx2 = 3,
-  /// With the parts F, DQ, BW and VL.
+  /// Uses the parts F, DQ, BW and VL.
   avx512 = 4,
   /// 64-bit ARM.
   neon = 5,
@@ -30,7 +30,8 @@ const char* kernelName(KernelTarget target);
 /// The target of a name; false if there is none, and `target` stays as it is.
 bool findKernel(const char* name, KernelTarget& target);
 
-/// Those that were built and that this processor can run, the slowest first: always `portable`, never `best`.
+/// Kernels that were built and that this processor can run, the slowest first: always `portable`, never
+/// `best`.
 std::span<const KernelTarget> availableKernels();
 bool isAvailable(KernelTarget target);
 /// The target itself if it is available, or else the best of those available that come before it.

@@ -12,19 +12,19 @@ namespace samestep {
 // The supported ranges, the same for every scalar. A caller's value outside them is refused; a value that
 // leaves them during a step is held at the limit and listed as an event.
 
-/// How far from the origin a body may be, metres, unless the Space says otherwise.
+/// Distance from the origin that a body may have, metres, unless the Space says otherwise.
 template <Scalar S>
 inline constexpr S kDefaultWorldExtent = S(1 << 15);
 /// The largest extent a Space may ask for, metres.
 template <Scalar S>
 inline constexpr S kMaxWorldExtent = S(1 << 20);
-/// Of each component of a velocity, m/s.
+/// Limit of each component of a velocity, m/s.
 template <Scalar S>
 inline constexpr S kMaxSpeed = S(1 << 10);
 /// rad/s.
 template <Scalar S>
 inline constexpr S kMaxAngularSpeed = S(1 << 8);
-/// How far a body may have turned, rad: beyond it a turn is no longer resolved.
+/// Limit of a body's angle, rad: beyond it a turn is no longer resolved.
 template <Scalar S>
 inline constexpr S kMaxAngle = S(1 << 30);
 /// kg. A mass may also be 0: to be accumulated from shapes.
@@ -37,20 +37,20 @@ template <Scalar S>
 inline constexpr S kMinMoment = ratio<S>(1, 1 << 20);
 template <Scalar S>
 inline constexpr S kMaxMoment = S(1 << 30);
-/// Of the inverse moment times a mass, 1/m^2: a disc of 2^-5 m has 2^11.
+/// Limit of the inverse moment times a mass, 1/m^2: a disc of 2^-5 m has 2^11.
 template <Scalar S>
 inline constexpr S kMaxRelativeMoment = S(1 << 18);
-/// Of each component of an acceleration, m/s^2.
+/// Limit of each component of an acceleration, m/s^2.
 template <Scalar S>
 inline constexpr S kMaxAcceleration = S(1 << 15);
-/// Of each component of a force, N, and of a torque, N m.
+/// Limit of each component of a force, N, and of a torque, N m.
 template <Scalar S>
 inline constexpr S kMaxForce = S(1 << 30);
-/// How far the centre of mass may lie from the body's origin, along each axis, metres.
+/// Limit of the distance of the centre of mass from the body's origin, along each axis, metres.
 template <Scalar S>
 inline constexpr S kMaxCenterOfMass = S(1 << 8);
-/// How many pairs of shapes a Space may hold, unless it or who reads a world says otherwise: four for each of
-/// the bodies that a reader lets in. A step takes up to 3.3 KB for each of them, see docs/formats.md.
+/// Number of pairs of shapes a Space may hold, unless it or who reads a world says otherwise: four for each
+/// of the bodies that a reader lets in. A step takes up to 3.3 KB for each of them, see docs/formats.md.
 inline constexpr std::uint32_t kDefaultMaxPairs = 1u << 18;
 /// The most it may be told to hold.
 inline constexpr std::uint32_t kMostPairs = 1u << 28;
@@ -58,7 +58,7 @@ inline constexpr std::uint32_t kMostPairs = 1u << 28;
 template <Scalar S>
 inline constexpr S kMaxTimeStep = S(1);
 
-/// Whether |x| <= limit; false for NaN.
+/// True if |x| <= limit; false for NaN.
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr bool within(S x, S limit) {
   return x >= -limit && x <= limit;
@@ -79,7 +79,7 @@ template <Scalar S>
   const Scaled<S> most = toScaled(limit);
   return x > most ? limit : x < -most ? -limit : toScalar<S>(x);
 }
-/// The same, held at the end of S: for getters, which saturate.
+/// Clamps a number to the range of S: for getters, which saturate.
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr S saturated(const Scaled<S>& x) {
   return toScalarWithin<S>(x, std::numeric_limits<S>::max());

@@ -15,7 +15,7 @@ void makeRoom(std::vector<T>& list, std::size_t elements) {
   if (elements > room) list.reserve(elements > 2 * room ? elements : 2 * room);
 }
 
-/// The same for lists of one length.
+/// Makes room in lists of one length.
 template <class... Lists>
 void makeRoomForEach(std::size_t elements, Lists&... lists) {
   (makeRoom(lists, elements), ...);

@@ -47,9 +47,9 @@ namespace samestep {
 /// a * b / c.
 [[gnu::always_inline]] constexpr double mulDiv(double a, double b, double c) { return a * b / c; }
 
-/// What is left of x after taking away whole multiples of y, toward zero: smaller in size than y, with the
-/// sign of x. Exact: y is doubled up to the size of x and taken away on the way back, and every step of that
-/// is exact. Takes one pass per binary digit of x / y.
+/// Remainder of x after taking away whole multiples of y, toward zero: smaller in size than y, with the sign
+/// of x. Exact: y is doubled up to the size of x and taken away on the way back, and every step of that is
+/// exact. Takes one pass per binary digit of x / y.
 [[gnu::always_inline]] constexpr double remainder(double x, double y) {
   const bool domain = x - x == 0.0 && (y < 0.0 || y > 0.0);
   if (!domain) return std::numeric_limits<double>::quiet_NaN();
@@ -137,7 +137,8 @@ double pow(double base, double exponent);
   return a * b - c * d;
 }
 
-/// As localPlace, localUnit, localLength and localDot on Fixed: on double, the number itself, and plain.
+/// These do on double what localPlace, localUnit, localLength and localDot do on Fixed: the number itself,
+/// and plain arithmetic.
 [[gnu::always_inline]] constexpr double localPlace(double difference) { return difference; }
 [[gnu::always_inline]] constexpr double localUnit(double component) { return component; }
 [[gnu::always_inline]] constexpr double localLength(double length) { return length; }
@@ -155,7 +156,7 @@ template <std::same_as<double> S>
   return w;
 }
 
-/// The same number with room for masses and their inverses: on double, itself.
+/// Number with room for masses and their inverses: on double, itself.
 [[gnu::always_inline]] constexpr double toScaled(double x) { return x; }
 
 }  // namespace samestep

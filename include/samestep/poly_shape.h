@@ -27,7 +27,7 @@ Shape<S> polyShapeRaw(BodyId body, std::span<const Vector<S>> vertices, S radius
 /// MIS: boxShapeNew, boxShapeInit
 template <Scalar S>
 Shape<S> boxShape(BodyId body, S width, S height, S radius = S(0));
-/// The same for a box anywhere in the body's frame. MIS: boxShapeNew2, boxShapeInit2
+/// Makes a box anywhere in the body's frame. MIS: boxShapeNew2, boxShapeInit2
 template <Scalar S>
 Shape<S> boxShape(BodyId body, const BB<S>& box, S radius = S(0));
 
@@ -75,7 +75,7 @@ class PolyShape : public ConstPolyShape<S> {
 
   /// Makes any shape this polygon; the surface, filter and ids stay, the mass too.
   static void assign(Shape<S>& shape, std::span<const Vector<S>> vertices, S radius);
-  /// The same with the hull of the points under a transform.
+  /// Assigns the hull of the points under a transform.
   static void assignHull(Shape<S>& shape, std::span<const Vector<S>> points, const Transform<S>& transform,
                          S radius);
 
@@ -87,14 +87,14 @@ class PolyShape : public ConstPolyShape<S> {
 /// momentForSegment. Vertices in either direction round, no two of them more than 2^20 m apart.
 template <Scalar S>
 Scaled<S> scaledMomentForPoly(Scaled<S> mass, std::span<const Vector<S>> vertices, const Vector<S>& offset);
-/// The same, saturating. The radius does not count, as in Chipmunk. MIS: momentForPoly
+/// Moment of a polygon, saturating. The radius does not count, as in Chipmunk. MIS: momentForPoly
 template <Scalar S>
 S momentForPoly(S mass, std::span<const Vector<S>> vertices, const Vector<S>& offset, S radius);
 
 /// kg m^2 of a box about its own centre.
 template <Scalar S>
 Scaled<S> scaledMomentForBox(Scaled<S> mass, S width, S height);
-/// The same, saturating.
+/// Moment of a box, saturating.
 template <Scalar S>
 S momentForBox(S mass, S width, S height);
 /// kg m^2 of a box about the origin; saturates.
@@ -104,7 +104,7 @@ S momentForBox(S mass, const BB<S>& box);
 /// m^2 of a polygon with its rounding; the part inside the vertices is negative where they go clockwise.
 template <Scalar S>
 Scaled<S> scaledAreaForPoly(std::span<const Vector<S>> vertices, S radius);
-/// The same, saturating. MIS: areaForPoly
+/// Area of a polygon, saturating. MIS: areaForPoly
 template <Scalar S>
 S areaForPoly(std::span<const Vector<S>> vertices, S radius);
 

@@ -11,7 +11,7 @@ template <Scalar S>
 struct PointHit {
   ShapeId shape{};
   Vector<S> point{};     ///< Nearest point of the shape's surface, m.
-  S distance{};          ///< From the surface, m; negative inside.
+  S distance{};          ///< Distance from the surface, m; negative inside.
   Vector<S> gradient{};  ///< Unit vector in which the distance grows.
 };
 
@@ -19,9 +19,9 @@ struct PointHit {
 template <Scalar S>
 struct SegmentHit {
   ShapeId shape{};
-  Vector<S> point{};   ///< Where it hits, m.
-  Vector<S> normal{};  ///< Of the surface hit, a unit vector.
-  S alpha{};           ///< How far along the segment, in [0, 1].
+  Vector<S> point{};   ///< Point of the hit, m.
+  Vector<S> normal{};  ///< Normal of the surface hit, a unit vector.
+  S alpha{};           ///< Fraction of the segment before the hit, in [0, 1].
 };
 
 }  // namespace samestep

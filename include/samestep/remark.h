@@ -6,7 +6,7 @@
 
 namespace samestep {
 
-/// What the engine points out without refusing the call: the warnings of the MIS first, then our own.
+/// Warnings that the engine gives without refusing the call: those of the MIS first, then our own.
 enum class Remark : std::uint8_t {
   HighIterWarning,
   NotBBTreeWarn,
@@ -19,7 +19,7 @@ inline constexpr std::size_t kRemarkKinds = 5;
 /// Counts remarks and passes each on to a log hook, if there is one. The library itself never prints.
 /// Not part of the simulated state.
 struct Remarks {
-  /// Called on the stepping thread. The text lives for the call only.
+  /// Function that is called on the stepping thread. The text lives for the call only.
   using Hook = void (*)(Remark remark, const char* text, void* context);
 
   std::array<std::uint64_t, kRemarkKinds> counts{};

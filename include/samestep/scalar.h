@@ -12,8 +12,8 @@
 
 namespace samestep {
 
-/// What the engine must know of a number type beyond its functions. Specialised for each supported type;
-/// any other type is refused by the concept Scalar.
+/// Traits that the engine must know of a number type beyond its functions. Specialised for each supported
+/// type; any other type is refused by the concept Scalar.
 template <class S>
 struct ScalarTraits {
   static constexpr bool kSupported = false;
@@ -30,7 +30,7 @@ struct ScalarTraits<BasicFixed<Rep, kFractionBits, Overflow>> {
   static constexpr bool kSupported = true;
 #endif
   static constexpr ScalarKind kKind = ScalarKind::fixed;
-  /// Whether it is cheaper to multiply again than to keep a product in memory.
+  /// True if it is cheaper to multiply again than to keep a product in memory.
   static constexpr bool kCheapProducts = false;
 };
 

@@ -30,7 +30,7 @@ class ConstSegmentShape {
   Vector<S> normal() const { return rperp(normalize(b() - a())); }
   /// MIS: segmentShapeGetRadius
   S radius() const { return shape_.radius(); }
-  /// From a to the neighbour set before it, and from b to the one after; zero without one.
+  /// Ways from a to the neighbour set before it, and from b to the one after; zero without one.
   Vector<S> tangentA() const { return shape_.vertices()[2]; }
   Vector<S> tangentB() const { return shape_.vertices()[3]; }
 
@@ -71,14 +71,14 @@ class SegmentShape : public ConstSegmentShape<S> {
 /// kg m^2 about the origin of a segment, as a box of the same length and width.
 template <Scalar S>
 Scaled<S> scaledMomentForSegment(Scaled<S> mass, const Vector<S>& a, const Vector<S>& b, S radius);
-/// The same, saturating. MIS: momentForSegment
+/// Moment of a segment, saturating. MIS: momentForSegment
 template <Scalar S>
 S momentForSegment(S mass, const Vector<S>& a, const Vector<S>& b, S radius);
 
 /// m^2 of a rounded segment.
 template <Scalar S>
 Scaled<S> scaledAreaForSegment(const Vector<S>& a, const Vector<S>& b, S radius);
-/// The same, saturating. MIS: areaForSegment
+/// Area of a segment, saturating. MIS: areaForSegment
 template <Scalar S>
 S areaForSegment(const Vector<S>& a, const Vector<S>& b, S radius);
 

@@ -8,19 +8,19 @@
 
 namespace samestep {
 
-/// How contacts are solved.
+/// Method by which contacts are solved.
 enum class SolverKind : std::uint8_t {
-  /// As the MIS and Chipmunk: `iterations` passes over all contacts for the speeds, with bias velocities that
-  /// push overlaps apart. Fits few contacts, and what must behave like Chipmunk.
+  /// Method of the MIS and Chipmunk: `iterations` passes over all contacts for the speeds, with bias
+  /// velocities that push overlaps apart. Fits few contacts, and what must behave like Chipmunk.
   sequentialImpulses = 0,
   /// `substeps` small steps with soft contacts and relaxation: for equal work far more accurate in piles and
   /// stacks.
   softStep = 1,
 };
 
-/// What the soft step computes contacts with, where the scalar leaves a choice.
+/// Numbers with which the soft step computes contacts, where the scalar leaves a choice.
 enum class ContactPrecision : std::uint8_t {
-  /// To the unit of the scalar.
+  /// Computes to the unit of the scalar.
   accurate = 0,
   /// Fixed: in integers of 32 bits, more at a time: the accuracy of a float, relative to the fastest body
   /// that touches anything and to the largest impulse. A step in which a number would not fit is made
@@ -28,7 +28,7 @@ enum class ContactPrecision : std::uint8_t {
   fast = 1,
 };
 
-/// What the MIS calls the state variables of a Space that a user sets, and those of the soft step.
+/// State variables of a Space that a user sets, as the MIS names them, and those of the soft step.
 template <Scalar S>
 struct Settings {
   SolverKind solver = SolverKind::softStep;
@@ -39,11 +39,11 @@ struct Settings {
   /// Soft step: how many substeps a step has, 1 to 100. They are for contacts: what nothing touches moves as
   /// constant forces have it, to rounding, with any number of them.
   std::int32_t substeps = 4;
-  /// For how many steps a contact that came apart keeps its impulses.
+  /// Number of steps for which a contact that came apart keeps its impulses.
   std::uint32_t collisionPersistence = 3;
   /// m/s^2
   Vector<S> gravity{};
-  /// What is left of every velocity after one second without forces, in [0, 1].
+  /// Fraction of every velocity that is left after one second without forces, in [0, 1].
   S damping{1};
   /// Sequential impulses: how far shapes may overlap without being pushed apart, m.
   S collisionSlop = ratio<S>(1, 200);

@@ -31,8 +31,8 @@ inline constexpr int kMaxMaterial = 1 << 10;
 template <Scalar S>
 inline constexpr S kMagicEpsilon = S(1e-5);
 
-/// Which shapes may touch. Two shapes do unless they share a group that is not 0, or either's category is
-/// outside the other's mask.
+/// Filter of the shapes that may touch. Two shapes do unless they share a group that is not 0, or either's
+/// category is outside the other's mask.
 struct ShapeFilter {
   std::uint32_t group = 0;
   std::uint32_t category = 0xffffffffu;
@@ -40,7 +40,7 @@ struct ShapeFilter {
   friend constexpr bool operator==(const ShapeFilter&, const ShapeFilter&) = default;
 };
 
-/// Whether the filters let two shapes touch.
+/// True if the filters let two shapes touch.
 [[gnu::always_inline]] inline constexpr bool accepts(const ShapeFilter& a, const ShapeFilter& b) {
   return (a.group == 0 || a.group != b.group) && (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
@@ -110,17 +110,17 @@ class Shape {
   constexpr ShapeType type() const { return type_; }
   /// MIS: shapeGetBody
   constexpr BodyId body() const { return body_; }
-  /// For a shape outside of any Space; a Space moves no shape to another body.
+  /// Names the body of a shape outside of any Space; a Space moves no shape to another body.
   constexpr void setBody(BodyId bodyId) { body_ = bodyId; }
 
   /// The id its Space knows it by; not valid() outside of one. MIS: shapeGetSpace
   constexpr ShapeId id() const { return id_; }
-  /// For a Space: from here on the shape is its own, and so is the id of its body.
+  /// Makes the shape a Space's own, and so the id of its body.
   constexpr void attach(ShapeId id) {
     id_ = id;
     body_.space = id.space;
   }
-  /// The same shape outside of any Space. Its body is the one it was on: before another Space takes it, it
+  /// Copy of the shape outside of any Space. Its body is the one it was on: before another Space takes it, it
   /// needs one of that.
   constexpr Shape detached() const {
     Shape copy = *this;
@@ -193,7 +193,7 @@ class Shape {
   std::span<const Vector<S>> vertices() const {
     return {vertices_.data(), static_cast<std::size_t>(min<int>(count_, vertices_.room()))};
   }
-  /// Of the canonical bytes, at most so many stand outside of the record.
+  /// Bytes of the canonical form that stand outside of the record, at most.
   static constexpr unsigned kBytesOutside = (kMaxPolyVertices - VertexList<S>::kFew) * sizeof(Vector<S>);
 
   friend bool operator==(const Shape& a, const Shape& b) { return a.same(b); }
@@ -224,13 +224,13 @@ class Shape {
     for (int i = 0; i < count; ++i) visit("vertex", self.vertices_.data()[i]);
   }
 
-  /// Whether the record could have been made by the functions of this library, the ids and the surface apart:
+  /// True if the record could have been made by the functions of this library, the ids and the surface apart:
   /// for what was read from outside.
   bool wellFormed() const { return surfaceWellFormed() && geometryWellFormed(); }
   /// The two parts of that: the second takes longer, and is the same for shapes of the same geometry.
   bool surfaceWellFormed() const;
   bool geometryWellFormed() const;
-  /// Whether type, vertices, radius and mass are the same.
+  /// True if type, vertices, radius and mass are the same.
   bool sameGeometry(const Shape& other) const;
 
  private:
@@ -275,19 +275,19 @@ struct alignas(64) PlacedShape {
   /// Room for planeCount(shape) planes, given by the owner of the PlacedShape, in the world. Polygon: its
   /// planes. Segment: {a, -n}, {b, n}, {tangent at a, tangent at b}. Circle: v0 is its centre.
   Plane<S>* planes = nullptr;
-  /// The same planes where the body holds them; shapes of one geometry may share them.
+  /// Planes as the body holds them; shapes of one geometry may share them.
   const Plane<S>* local = nullptr;
   S radius{};
   ShapeType type = ShapeType::circle;
   std::uint8_t count = 1;  ///< Vertices: circle 1, segment 2.
-  /// Whether the second half of the local planes is the first half turned by 180 degrees.
+  /// True if the second half of the local planes is the first half turned by 180 degrees.
   bool halved = false;
 
-  /// Of a circle, in the world.
+  /// Centre of a circle, in the world.
   const Vector<S>& center() const { return planes[0].v0; }
 };
 
-/// How many planes a PlacedShape of this shape needs: at most kMaxPolyVertices.
+/// Number of planes a PlacedShape of this shape needs: at most kMaxPolyVertices.
 template <Scalar S>
 int planeCount(const Shape<S>& shape);
 
@@ -327,7 +327,7 @@ class Placement {
 template <Scalar S>
 BB<S> boundingBox(const Shape<S>& shape, const Transform<S>& pose);
 
-/// Where a point stands to a shape.
+/// Nearest point of a shape to a query point.
 template <Scalar S>
 struct PointQueryInfo {
   Vector<S> point;     ///< The nearest point of the surface, in the world.
@@ -341,12 +341,12 @@ struct PointQueryInfo {
 template <Scalar S>
 PointQueryInfo<S> pointQuery(const PlacedShape<S>& shape, const Vector<S>& point);
 
-/// Where a moving circle first touches a shape.
+/// First touch of a moving circle and a shape.
 template <Scalar S>
 struct SegmentQueryInfo {
   bool hit = false;
   S alpha{1};        ///< The part of the way, in [0, 1]; 1 without a hit.
-  Vector<S> point;   ///< Where they touch, on the surface of the shape; the end of the way without a hit.
+  Vector<S> point;   ///< Point of the touch, on the surface of the shape; the end of the way without a hit.
   Vector<S> normal;  ///< The unit normal of the surface there; zero without a hit.
 };
 

@@ -14,11 +14,11 @@
 
 namespace samestep {
 
-/// Which of some slots are free, as bits, and which words of those have any: the lowest is found in a few
+/// Free ones among some slots, as bits, and the words of those that have any: the lowest is found in a few
 /// operations.
 class FreeSlots {
  public:
-  /// As many, none of them free.
+  /// Makes as many slots, none of them free.
   void reset(std::uint32_t slots);
   /// Makes room for so many.
   void reserve(std::uint32_t slots);
@@ -66,7 +66,8 @@ class SlotMap {
   /// The last even generation: a slot that reaches it is never used again.
   static constexpr std::uint32_t kRetired = 0xfffffffeu;
 
-  /// Whose its ids are, see Id::space; 0 until it is set. It goes with a copy, and is no part of the state.
+  /// Number of the Space whose ids these are, see Id::space; 0 until it is set. It goes with a copy, and is
+  /// no part of the state.
   std::uint32_t space() const { return space_; }
   void setSpace(std::uint32_t space) { space_ = space; }
 
@@ -151,7 +152,7 @@ class SlotMap {
   bool contains(IdType id) const {
     return id.index < slots() && generations_[id.index] == id.generation && aliveAt(id.index) && isOurs(id);
   }
-  /// Whether an id may be one of this map's.
+  /// True if an id may be one of this map's.
   bool isOurs(IdType id) const { return id.space == space_ || id.space == 0 || space_ == 0; }
   bool aliveAt(std::uint32_t slot) const {
     expects(slot < slots());
@@ -175,7 +176,7 @@ class SlotMap {
     requireAlive<F>(id, asked);
     return values_[id.index];
   }
-  /// The same without the value.
+  /// Requires that the object lives, and does not return it.
   template <Fault F>
   void requireAlive(IdType id, const char* asked) const {
     if (!contains(id)) [[unlikely]]
@@ -185,7 +186,7 @@ class SlotMap {
   T* find(IdType id) { return contains(id) ? &values_[id.index] : nullptr; }
   const T* find(IdType id) const { return contains(id) ? &values_[id.index] : nullptr; }
 
-  /// What is in a slot below slots().
+  /// Value in a slot below slots().
   T& valueAt(std::uint32_t slot) {
     expects(slot < slots());
     return values_[slot];

@@ -15,18 +15,18 @@ namespace samestep {
 /// The format that saveSnapshot writes; loadSnapshot reads every version from 1 up to it. 0 was a trial.
 inline constexpr std::uint32_t kSnapshotVersion = 1;
 
-/// What the first bytes of a snapshot say.
+/// Header of a snapshot: what its first bytes say.
 struct SnapshotInfo {
   std::uint32_t version = 0;
   std::uint32_t revision = 0;  ///< kSimulationRevision of the build that saved it.
   ScalarKind scalar = ScalarKind::fixed;
-  std::uint64_t size = 0;  ///< Of the whole snapshot, bytes.
+  std::uint64_t size = 0;  ///< Size of the whole snapshot, bytes.
 };
 
 /// @throws FormatError for what is no snapshot, and for one of a version that this build does not read
 SnapshotInfo snapshotInfo(std::span<const std::uint8_t> bytes);
 
-/// What to do with a snapshot that another revision of the simulation saved.
+/// Treatment of a snapshot that another revision of the simulation saved.
 enum class OtherRevision : std::uint8_t {
   refuse,
   /// Take the state it holds. It goes on by the rules of this build, not as it would have in the other.

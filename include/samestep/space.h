@@ -128,8 +128,8 @@ class Space {
   /// @throws DuplicateBody, AttachedBody, SpaceLocked; IllegalBody outside the world extent
   /// MIS: spaceAddBody
   BodyId add(const Body<S>& body);
-  /// The same under an id of the caller's choice. Worlds whose objects all have given ids are the same, bit
-  /// by bit, whatever the order in which objects came and went; see docs/determinism.md.
+  /// Adds a body under an id of the caller's choice. Worlds whose objects all have given ids are the same,
+  /// bit by bit, whatever the order in which objects came and went; see docs/determinism.md.
   /// @param id  its index below 2^16, better near 0: a world takes room for all indices up to its highest;
   /// its
   ///            generation odd and higher than any its slot has had, 1 for the first
@@ -143,7 +143,7 @@ class Space {
   /// @throws DuplicateShape, AttachedShape, BodyNotFound, IllegalBody, SizeOutOfRange, SpaceLocked
   /// MIS: spaceAddShape, bodyAddShape
   ShapeId add(const Shape<S>& shape);
-  /// The same under an id of the caller's choice, as for bodies.
+  /// Adds a shape under an id of the caller's choice, as for bodies.
   /// @throws as add; IndexOutOfBounds, IllegalId
   ShapeId add(const Shape<S>& shape, ShapeId id);
   /// @throws BodyNotFound, MainStaticBody, BodyHasShapes, SpaceLocked
@@ -179,10 +179,10 @@ class Space {
     apply(copy);
     replace(id, copy);
   }
-  /// Also forgets the bias velocities. A body that becomes dynamic has the mass it had when it was so last,
-  /// unless shapes with mass came, went or changed since: those count as if it had been dynamic all along.
-  /// The same type again changes nothing. Where two static bodies touch that did when one of them moved,
-  /// nothing is called while they touch; separate is, once, when they no longer do.
+  /// Changes the type and forgets the bias velocities. A body that becomes dynamic has the mass it had when
+  /// it was so last, unless shapes with mass came, went or changed since: those count as if it had been
+  /// dynamic all along. The same type again changes nothing. Where two static bodies touch that did when one
+  /// of them moved, nothing is called while they touch; separate is, once, when they no longer do.
   /// @throws SpaceLocked, BodyNotFound; MainStaticBody for the designated static body; SizeOutOfRange or
   ///         IllegalBody where its shapes are too large or too heavy for a body that moves
   /// MIS: bodySetType
@@ -239,7 +239,7 @@ class Space {
         [](Arbiter<S>& arbiter, void* to) { (*static_cast<std::remove_reference_t<Visit>*>(to))(arbiter); },
         const_cast<void*>(static_cast<const void*>(&visit)));
   }
-  /// The same for those of one body, which is each arbiter's A or B as its ids say. O(its pairs) after the
+  /// Visits the arbiters of one body, which is each arbiter's A or B as its ids say. O(its pairs) after the
   /// first call of a step.
   /// @throws BodyNotFound
   /// MIS: bodyEachArbiter, arbiterNext, arbiterThreadForBody
@@ -260,24 +260,24 @@ class Space {
   void registerPositionFunc(CallbackNumber number, PositionFunc function, void* data = nullptr);
   void registerVelocityFunc(CallbackNumber number, VelocityFunc function, void* data = nullptr);
 
-  /// For shapes of these two types, A and B in this order. kWildcardCollisionType as one of them stands for
-  /// every type that no handler names together with the other; as both, for shapes without a type of their
-  /// own. Where two such handlers fit, that of the shape with the lower id is called. Who is called follows
-  /// from the types of that moment: of shapes whose types change while they touch, begin may go to one
-  /// handler and separate to another.
+  /// Adds a handler for shapes of these two types, A and B in this order. kWildcardCollisionType as one of
+  /// them stands for every type that no handler names together with the other; as both, for shapes without a
+  /// type of their own. Where two such handlers fit, that of the shape with the lower id is called. Who is
+  /// called follows from the types of that moment: of shapes whose types change while they touch, begin may
+  /// go to one handler and separate to another.
   /// @throws MissingCallback, SpaceLocked
   /// MIS: spaceAddCollisionHandler
   void addCollisionHandler(CollisionType typeA, CollisionType typeB, CallbackNumber number);
-  /// For shapes of this type, as A, with any other, where no handler of the pair takes over.
+  /// Adds a handler for shapes of this type, as A, with any other, where no handler of the pair takes over.
   /// @throws MissingCallback, SpaceLocked
   /// MIS: spaceAddWildcardHandler
   void addWildcardHandler(CollisionType type, CallbackNumber number);
-  /// For pairs without a handler of their own; in place of the wildcards.
+  /// Adds the handler for pairs without one of their own; in place of the wildcards.
   /// @throws MissingCallback, SpaceLocked
   /// MIS: spaceAddDefaultCollisionHandler
   void addDefaultCollisionHandler(CallbackNumber number);
 
-  /// What the wildcard handler of one of the shapes says, for a handler that wants to pass a call on.
+  /// Calls the wildcard handler of one of the shapes, for a handler that wants to pass a call on.
   /// MIS: arbiterCallWildcardBeginA
   bool callWildcardBeginA(Arbiter<S>& arbiter);
   /// MIS: arbiterCallWildcardBeginB
@@ -314,7 +314,7 @@ class Space {
   /// MIS: spaceStep
   void step(S dt);
 
-  /// Whether a step, query or visit is under way. MIS: spaceIsLocked
+  /// True while a step, query or visit is under way. MIS: spaceIsLocked
   bool isLocked() const { return locked_ > 0; }
   /// MIS: spaceLock
   void lock() { ++locked_; }
@@ -323,39 +323,39 @@ class Space {
   /// MIS: spaceUnlock
   void unlock(bool runPostStep);
 
-  /// What was held at its limit during the last step, by body id.
+  /// Values that were clamped during the last step, by body id.
   std::span<const RangeEvent> rangeEvents() const;
-  /// Which contacts the Space lists from the next step on. Wiring: no saved world carries it, and no result
-  /// depends on it.
+  /// Sets which contacts the Space lists from the next step on. Wiring: no saved world carries it, and no
+  /// result depends on it.
   /// @throws SpaceLocked; ValueOutOfRange for a slowest impact outside [0, 2^11]
   void setEventListing(const EventListing<S>& listing);
   const EventListing<S>& eventListing() const;
-  /// What the last step listed: the same whatever the number of workers and, of objects with given ids, the
-  /// order in which they came. It lives until the next step, or until a world is brought in, which leaves
+  /// Contact events of the last step: the same whatever the number of workers and, of objects with given ids,
+  /// the order in which they came. It lives until the next step, or until a world is brought in, which leaves
   /// nothing listed. A step that is refused leaves it as it is.
   ContactEvents<S> contactEvents() const;
   /// Iteration limits reached and the like.
   const CollisionStats& collisionStats() const;
-  /// How many steps were to be fast but had numbers that do not fit, and were made accurately: see
+  /// Number of steps that were to be fast but had numbers that do not fit, and were made accurately: see
   /// ContactPrecision. The same on every machine.
   std::uint64_t accurateInstead() const;
-  /// Called after each stage of a step; nullptr for none, which costs nothing.
+  /// Sets the function that is called after each stage of a step; nullptr for none, which costs nothing.
   void setStageObserver(StageObserver observer, void* data = nullptr);
 
-  /// How many pairs of shapes near each other the Space may hold, at most kMostPairs; kDefaultMaxPairs until
-  /// called. What a step needs besides grows with them, and n shapes in one place are n^2 / 2 pairs: this is
-  /// what bounds the memory and the time of a step of a world that somebody else made. Of shapes whose boxes
-  /// are near each other, be they of one body or filtered out, there may be eight times as many pairs.
-  /// Wiring: no saved world carries it, and no result depends on it but the refusal, which depends on nothing
-  /// else than the world, so that of peers with the same limit none goes on alone.
+  /// Limits the pairs of shapes near each other that the Space may hold, at most kMostPairs; kDefaultMaxPairs
+  /// until called. What a step needs besides grows with them, and n shapes in one place are n^2 / 2 pairs:
+  /// this is what bounds the memory and the time of a step of a world that somebody else made. Of shapes
+  /// whose boxes are near each other, be they of one body or filtered out, there may be eight times as many
+  /// pairs. Wiring: no saved world carries it, and no result depends on it but the refusal, which depends on
+  /// nothing else than the world, so that of peers with the same limit none goes on alone.
   /// @throws SpaceLocked; ValueOutOfRange
   void setMaxPairs(std::uint32_t pairs);
   std::uint32_t maxPairs() const;
 
-  /// Who is asked whether a call shall end: between the stages of a step, within them every few thousand
-  /// pairs, objects or calls of handlers, after each pass of a solver, and while a body of many shapes goes.
-  /// A step that ends so leaves the world midway, see the class. With workers it may be asked on one of
-  /// theirs. No saved world carries it, and no result depends on it.
+  /// Sets the function that is asked whether a call shall end: between the stages of a step, within them
+  /// every few thousand pairs, objects or calls of handlers, after each pass of a solver, and while a body of
+  /// many shapes goes. A step that ends so leaves the world midway, see the class. With workers it may be
+  /// asked on one of theirs. No saved world carries it, and no result depends on it.
   void setInterrupt(const Interrupt& interrupt);
   /// Work done by this Space so far, in units that take from 2 to 25 ns on the machine of
   /// docs/performance.md. It follows from the calls alone, whoever computes.
@@ -364,7 +364,8 @@ class Space {
   /// same place everywhere. Without limit until called.
   void setMaxWork(std::uint64_t work);
 
-  // Who computes. Wiring, like functions: no result depends on it, and no saved world carries it.
+  // Workers and kernel are wiring, like functions: no result depends on them, and no saved world carries
+  // them.
 
   /// Steps with the help of a runner's workers, which must outlive the Space or the next call; null for none,
   /// which costs nothing. Whatever is ordered stays on the stepping thread: callbacks, what they see, sums.
@@ -376,12 +377,12 @@ class Space {
   /// and remarked on. Until called, the best one.
   /// @throws SpaceLocked; ValueOutOfRange for a value that names no kernel
   void setKernel(KernelTarget target);
-  /// The same, for tests: never another one.
+  /// Takes a kernel for tests: never another one.
   /// @throws SpaceLocked; KernelUnavailable
   void forceKernel(KernelTarget target);
   /// The one in use.
   KernelTarget kernel() const;
-  /// Who is told what the Space points out.
+  /// Diagnostics: the function that is told what the Space points out.
   Remarks& remarks();
   const Remarks& remarks() const;
 
@@ -428,9 +429,9 @@ class Space {
     requireUsable();
     return state_;
   }
-  /// Whether the world is whole: see the class.
+  /// True if the world is whole: see the class.
   bool isUsable() const { return !leftMidway_; }
-  /// For who makes one change of several calls: says that an exception ended it midway.
+  /// Says that an exception ended a change of several calls midway.
   void leaveMidway() { leftMidway_ = true; }
 
   /// Copies the world into memory; callbacks waiting and functions registered are not part of it.
@@ -450,9 +451,9 @@ class Space {
   /// @throws SpaceLocked, ForeignWorld, MissingCallback
   void adopt(const WorldState<S>& state);
   void adopt(WorldState<S>&& state);
-  /// How often another world was brought in, by restore, adopt or loadSnapshot. Who keeps ids, or anything
-  /// else that follows from the world, beside it compares this: where it has changed, they are to be found
-  /// anew. No state: peers that restored differently often have other counts.
+  /// Number of times another world was brought in, by restore, adopt or loadSnapshot. Who keeps ids, or
+  /// anything else that follows from the world, beside it compares this: where it has changed, they are to be
+  /// found anew. No state: peers that restored differently often have other counts.
   std::uint64_t worldsBroughtIn() const;
   /// Forgets everything that can be computed again. Changes no result.
   /// @throws SpaceLocked
@@ -485,7 +486,7 @@ class Space {
   /// @param theirs  whose ids those of that world are, or 0
   template <class Bring>
   void bringIn(std::uint32_t theirs, Bring&& bring);
-  /// From here on the ids of this world are those of the Space of a number; see Id::space.
+  /// Makes the ids of this world those of the Space of a number; see Id::space.
   void giveIds(std::uint32_t space);
   StepContext<S> contextOf(S dt = S(0));
   std::uint32_t firstShape(BodyId id) const;

@@ -26,7 +26,7 @@ template <Scalar S>
 WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset,
                           const WorldLimits& limits = {});
 
-/// Why no Space could have this state, or null.
+/// Reason why no Space could have this state, or null.
 template <Scalar S>
 const char* flawOf(const WorldState<S>& world, const WorldLimits& limits = {});
 

@@ -64,7 +64,7 @@ class SpatialIndex {
 
   /// MIS: spatialIndexCount
   virtual std::uint32_t count() const = 0;
-  /// By rising key. MIS: spatialIndexEach
+  /// Visits by rising key. MIS: spatialIndexEach
   virtual void each(IteratorFunc visit, void* context) const = 0;
   /// MIS: spatialIndexContains
   virtual bool contains(IndexKey object) const = 0;

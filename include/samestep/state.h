@@ -14,7 +14,7 @@
 
 namespace samestep {
 
-/// Which collisions a handler is for, and the number its functions are registered under.
+/// Collisions a handler is for, and the number its functions are registered under.
 struct HandlerBinding {
   enum class Kind : std::uint8_t { pair = 0, wildcard = 1, fallback = 2 };
   CollisionType typeA = 0;
@@ -37,7 +37,7 @@ struct HandlerBinding {
   }
 };
 
-/// How large a world from outside may be, the records of each section, and how much its steps may do.
+/// Limits of a world from outside: the records of each section, and how much its steps may do.
 struct WorldLimits {
   std::uint32_t bodies = 1u << 16;
   std::uint32_t shapes = 1u << 16;
@@ -52,7 +52,7 @@ struct WorldLimits {
 struct Section {
   const char* object;                 ///< The name of one of its records in messages: "body".
   const char* tooMany;                ///< The reason for refusing a world with more of them than allowed.
-  std::uint32_t WorldLimits::*limit;  ///< How many are allowed.
+  std::uint32_t WorldLimits::*limit;  ///< Member of WorldLimits that limits its records.
 };
 
 /// Everything the future of a world depends on: hashed, saved, portable.

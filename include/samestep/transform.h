@@ -22,7 +22,7 @@ struct Transform {
   constexpr Transform(S aIn, S bIn, S cIn, S dIn, S txIn, S tyIn)
       : a(aIn), b(bIn), c(cIn), d(dIn), tx(txIn), ty(tyIn) {}
 
-  /// From the same numbers written row by row. MIS: transformNewTranspose
+  /// Makes a transform from the same numbers written row by row. MIS: transformNewTranspose
   [[gnu::always_inline]] static constexpr Transform fromRows(S a, S c, S tx, S b, S d, S ty) {
     return {a, b, c, d, tx, ty};
   }
@@ -52,7 +52,7 @@ template <Scalar S>
   return {dot(t.a, p.x, t.c, p.y) + t.tx, dot(t.b, p.x, t.d, p.y) + t.ty};
 }
 
-/// Without the translation. MIS: transformVect
+/// Transforms without the translation. MIS: transformVect
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr Vector<S> transformVect(const Transform<S>& t, const Vector<S>& v) {
   return {dot(t.a, v.x, t.c, v.y), dot(t.b, v.x, t.d, v.y)};

@@ -137,7 +137,7 @@ template <Scalar S>
   return length(v) > limit ? normalize(v) * limit : v;
 }
 
-/// From a (t = 0) to b (t = 1), each component rounded once. MIS: vectLerp
+/// Interpolates from a (t = 0) to b (t = 1), each component rounded once. MIS: vectLerp
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr Vector<S> lerp(const Vector<S>& a, const Vector<S>& b, S t) {
   return mulAdd(b - a, t, a);
@@ -155,7 +155,7 @@ template <Scalar S>
   return length(a - b);
 }
 
-/// Whether a and b are less than `limit` metres apart, decided exactly. MIS: vectNear
+/// True if a and b are less than `limit` metres apart, decided exactly. MIS: vectNear
 template <Scalar S>
 [[gnu::always_inline]] inline constexpr bool near(const Vector<S>& a, const Vector<S>& b, S limit) {
   const Vector<S> d = a - b;

@@ -7,12 +7,12 @@
 
 namespace samestep {
 
-/// Who does the parts of a step that several threads can do: a job system of the caller's, or a WorkerPool.
-/// Its threads must have the default floating-point environment, as the stepping one must.
+/// Interface of who does the parts of a step that several threads can do: a job system of the caller's, or a
+/// WorkerPool. Its threads must have the default floating-point environment, as the stepping one must.
 class TaskRunner {
  public:
   virtual ~TaskRunner() = default;
-  /// How many tasks it runs at once, at least 1. Asked once, by Space::setWorkers.
+  /// Number of tasks it runs at once, at least 1. Asked once, by Space::setWorkers.
   virtual int workers() const = 0;
   /// Calls task(index, data) once for each index in [0, tasks), on any threads and in any order, and returns
   /// when all have returned. A task throws nothing and calls no run(). Tasks may wait for each other's work,
@@ -20,9 +20,9 @@ class TaskRunner {
   virtual void run(int tasks, void (*task)(int index, void* data), void* data) = 0;
 };
 
-/// What a Space shares out among workers.
+/// Parts of a step that a Space shares out among workers.
 enum class Sharing : std::uint8_t {
-  whenWorth = 0,  ///< What takes longer than waking somebody for it.
+  whenWorth = 0,  ///< Shares what takes longer than waking somebody for it.
   always = 1,     ///< Everything that can be, in the smallest parts: for tests.
 };
 
@@ -45,7 +45,7 @@ class WorkerPool : public TaskRunner {
   int workers() const override;
   void run(int tasks, void (*task)(int index, void* data), void* data) override;
 
-  /// How many workers this machine runs at once, at least 1.
+  /// Number of workers this machine runs at once, at least 1.
   static int processors();
 
  private:
