@@ -8,15 +8,15 @@
 
 namespace samestep {
 
-/// How much work a Space has done, how much it may do, and who is asked whether it shall go on. A unit of
-/// work is about 10 ns; what is counted, and when, follows from the world alone.
+/// Work a Space has done and may do, and the function that is asked whether it shall go on. A unit of work is
+/// about 10 ns; what is counted, and when, follows from the world alone.
 class Budget {
  public:
   static constexpr std::uint64_t kNoEnd = ~std::uint64_t{0};
-  /// As much is done between two questions, about: a few milliseconds, and far more than a question takes.
+  /// Pairs between two questions, about: a few milliseconds, and far more than a question takes.
   static constexpr std::uint32_t kPairsAtOnce = 4096;
   static constexpr std::uint32_t kObjectsAtOnce = 1024;
-  // What the parts of a step take, each of its kind.
+  // These are the units that parts of a step take, each of its kind.
   static constexpr std::uint64_t kPerObject = 8;
   static constexpr std::uint64_t kPerCandidate = 2;
   static constexpr std::uint64_t kPerPair = 32;
@@ -27,7 +27,7 @@ class Budget {
   std::uint64_t most = kNoEnd;
 
   std::uint64_t spent() const { return spent_; }
-  /// Whether questions are asked at all.
+  /// True if questions are asked at all.
   bool isWatched() const { return most != kNoEnd || interrupt.wanted != nullptr; }
   /// Notes work done where nobody can be asked.
   void note(std::uint64_t units) { spent_ += units; }

@@ -130,7 +130,7 @@ const char* message(Fault fault) {
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
-// Where decimals of double are made.
+// This is where decimals of double are made.
 char* writeDecimal(char* to, const char* end, double number) noexcept;
 #endif
 

@@ -12,7 +12,7 @@ namespace samestep {
 
 namespace {
 
-/// Whoever may end a search is asked when so many pairs more are found.
+/// Number of pairs found between two questions whether a search shall end.
 constexpr std::size_t kFoundAtOnce = 1 << 16;
 
 constexpr std::uint8_t kMovedHere = 1;
@@ -24,7 +24,8 @@ const S kGridScale = S(1 << kGridBits);
 template <Scalar S>
 const S kGridEdge = S(kGridLimit >> kGridBits);
 
-/// What is no number counts as -infinity here and as +infinity in gridCeil: its box overlaps everything.
+/// Grid line below x; what is no number counts as -infinity here and as +infinity in gridCeil: its box
+/// overlaps everything.
 template <Scalar S>
 std::int32_t gridFloor(S x) {
   const S edge = kGridEdge<S>;
@@ -95,8 +96,8 @@ void BBTree<S>::setMargin(S margin) {
   }
 }
 
-// As Chipmunk's cpBBTree GetBB, which has a tenth of the size and a tenth of a second: with less the leaves
-// of what moves are placed anew too often, with more there are too many candidates.
+// The margins are those of Chipmunk's cpBBTree GetBB, a tenth of the size and a tenth of a second: with less
+// the leaves of what moves are placed anew too often, with more there are too many candidates.
 template <Scalar S>
 void BBTree<S>::placeMoving(IndexKey key, const BB<S>& tight, const Vector<S>& velocity) {
   constexpr S kPartOfSize = ratio<S>(1, 7), kSeconds = ratio<S>(1, 5);
@@ -257,7 +258,7 @@ bool BBTree<S>::findChanged(const BBTree* resting, std::uint64_t most, Budget* b
     });
     if (tooMany()) return false;
   }
-  // Those that were known may be too many by themselves.
+  // The pairs that were known may be too many by themselves.
   return !tooMany();
 }
 
@@ -282,7 +283,7 @@ void BBTree<S>::sortFound() {
   }
 }
 
-// From the back, so that the old pairs need no second array.
+// Merging from the back needs no second array for the old pairs.
 template <Scalar S>
 void BBTree<S>::mergeFound() {
   std::size_t old = pairs_.size();
@@ -390,7 +391,7 @@ void BBTree<S>::reindexQuery(QueryFunc found, void* context) {
   for (const KeyPair& pair : pairsAfresh()) found(context, pair.a, pair.b);
 }
 
-// For a static tree, whose changes are its dynamic tree's to take up, and beside a static index that is no
+// This serves a static tree, whose changes are its dynamic tree's to take up, and a static index that is no
 // tree.
 template <Scalar S>
 std::vector<KeyPair> BBTree<S>::pairsAfresh() const {

@@ -343,7 +343,7 @@ void BoxTree::splitAll(std::vector<Leaf>& leaves) {
       hang(range.place, kLeaf | leaves[range.begin].key, leaves[range.begin].box, 0);
       continue;
     }
-    GridBox centers = kEmptyBox;  // Of the doubled centres, halved to stay within 32 bits.
+    GridBox centers = kEmptyBox;  // Box of the doubled centres, halved to stay within 32 bits.
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const GridBox& box = leaves[i].box;
       const std::int32_t x = (box.left + box.right) / 2;

@@ -11,10 +11,10 @@
 
 namespace samestep {
 
-/// How far a body will go, as far as its velocity and the forces on it say, not contacts.
+/// Motion of a body in the step, as far as its velocity and the forces on it say, not contacts.
 template <Scalar S>
 struct StepWay {
-  Vector<S> center{};  ///< Of mass, in the world.
+  Vector<S> center{};  ///< Centre of mass, in the world.
   Vector<S> way{};     ///< m
   S turn{};            ///< rad
   S offset{};          ///< No less than the center is from the body's origin, m.
@@ -29,18 +29,18 @@ struct StepWay {
     return way;
   }
 
-  /// Of its material at a place.
+  /// Way of its material at a place.
   Vector<S> at(const Vector<S>& point) const { return way + perp(point - center) * turn; }
-  /// How far the turn takes a point of a shape, at most.
+  /// Distance that the turn takes a point of a shape, at most.
   /// @param reach  of the shape, in units of 1 / kReachUnits m
   S turnedAtMost(std::int32_t reach) const {
-    // What a point may lie beside its shape is a contact's depth.
+    // A contact's depth is the most a point may lie beside its shape.
     constexpr std::int32_t kBeside = kReachUnits;
     return abs(turn) * (S(reach + kBeside) * ratio<S>(1, kReachUnits) + offset);
   }
 };
 
-/// What a contact needs to know of a body and its shape.
+/// Body and shape as a contact needs them.
 template <Scalar S>
 struct Approaching {
   const PlacedShape<S>& shape;
@@ -53,9 +53,9 @@ struct Approaching {
   }
 };
 
-/// Whether a contact between shapes that are apart is one: a contact that would act in this step holds the
-/// shapes to a plane, which is right only where they meet on their way. If they do, the contact becomes the
-/// one with which they meet.
+/// Tells whether a contact between shapes that are apart is one: a contact that would act in this step holds
+/// the shapes to a plane, which is right only where they meet on their way. If they do, the contact becomes
+/// the one with which they meet.
 /// @param normal  the pair's, in the world
 template <Scalar S>
 bool meets(Pair<S>& pair, const Approaching<S>& a, const Approaching<S>& b, const Vector<S>& normal) {

@@ -48,7 +48,7 @@ Vector<S> Arbiter<S>::surfacePoint(int body, int index) const {
   const Vector<S>& anchor = body == 0 ? contact.anchorA : contact.anchorB;
   const S radius = shapes_[body]->radius();
   if (!isSolved() || radius == S(0)) return bodies_[body]->toWorld(anchor);
-  // What is round turns below its point.
+  // A round shape turns below its point.
   const Vector<S> before = body == 0 ? pair_.localNormal : unrotate(pair_.solvedNormal, pair_.solvedTurn);
   const S outward = body == 0 ? radius : -radius;
   return bodies_[body]->toWorld(anchor - before * outward) + pair_.solvedNormal * outward;

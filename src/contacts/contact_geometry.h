@@ -8,7 +8,7 @@
 
 namespace samestep {
 
-/// Where a body's coordinates lie in the world.
+/// Coordinates of a body, as they lie in the world.
 template <Scalar S>
 struct Frame {
   Vector<S> origin{};
@@ -21,16 +21,16 @@ struct Frame {
   friend bool operator==(const Frame&, const Frame&) = default;
 };
 
-/// Where a contact is now, from where its bodies are.
+/// Contact as it is now, from where its bodies are.
 template <Scalar S>
 struct ContactArms {
-  /// From the centres of mass to the surface points, in world axes, m.
+  /// Lever arms from the centres of mass to the surface points, in world axes, m.
   Vector<S> armA, armB;
-  /// Of the surface points along the normal, m; negative where the shapes overlap.
+  /// Separation of the surface points along the normal, m; negative where the shapes overlap.
   S separation;
 };
 
-/// From A to B, a unit vector in the world.
+/// Normal from A to B, a unit vector in the world.
 template <Scalar S>
 [[gnu::always_inline]] inline Vector<S> worldNormal(const Pair<S>& pair, const Body<S>& a) {
   return rotate(pair.localNormal, a.rotation());
@@ -65,15 +65,15 @@ inline constexpr int kTurnBits = 29;
 /// Units of a shape's reach per metre.
 inline constexpr int kReachBits = 4;
 inline constexpr int kReachUnits = 1 << kReachBits;
-/// How many units no point of a shape may have moved: a millimetre, a fifth of the usual slop and a
-/// twentieth of the usual margin.
+/// Units that no point of a shape may have moved: a millimetre, a fifth of the usual slop and a twentieth of
+/// the usual margin.
 inline constexpr int kSteadyUnits = 65;
 
 /// A turn in 32 bits: the cosine or the sine, whichever is smaller in size, which is where it tells most, and
 /// in the two lowest bits which one it is and the sign of the other.
 template <Scalar S>
 [[gnu::always_inline]] inline std::uint32_t turnBits(const Vector<S>& turn) {
-  // Of equals the cosine.
+  // Equal numbers take the cosine.
   const bool bySine = (turn.x - turn.y) * (turn.x + turn.y) > S(0);
   const S small = bySine ? turn.y : turn.x, large = bySine ? turn.x : turn.y;
   std::int32_t units;
@@ -85,8 +85,8 @@ template <Scalar S>
   return static_cast<std::uint32_t>(units) << 2 | (bySine ? 2u : 0u) | (large < S(0) ? 1u : 0u);
 }
 
-/// How `b` stands to `a`. What is farther than 2^15 m is told modulo 2^16 m: shapes that meet before and
-/// after never moved by that.
+/// Pose of `b` relative to `a`. What is farther than 2^15 m is told modulo 2^16 m: shapes that meet before
+/// and after never moved by that.
 template <Scalar S>
 [[gnu::always_inline]] inline RelativePose relativePose(const Frame<S>& a, const Frame<S>& b) {
   // Toward zero: the mirror image stands in the mirror image of the place.
@@ -101,9 +101,9 @@ template <Scalar S>
   return {units(place.x), units(place.y), turnBits(unrotate(b.rotation, a.rotation))};
 }
 
-/// Whether no point within a reach of b's origin has moved by more than kSteadyUnits, whatever was cut off
-/// both poses. A turn by more than 2^-8, or across a diagonal, where the other number becomes the smaller
-/// one, counts as far.
+/// Contact recycling test: true if no point within a reach of b's origin has moved by more than kSteadyUnits,
+/// whatever was cut off both poses. A turn by more than 2^-8, or across a diagonal, where the other number
+/// becomes the smaller one, counts as far.
 /// @param reach  in units of 1 / kReachUnits m
 [[gnu::always_inline]] inline bool steady(const RelativePose& now, const RelativePose& then,
                                           std::int32_t reach) {

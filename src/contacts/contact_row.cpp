@@ -94,7 +94,7 @@ void prepareAxes(const Pair<S>& pair, const Contact<S>& contact, const PairRespo
   row.surface = dot(pair.surfaceVelocity, t);
   row.normalSum = max(sumOf(contact.normalSpeed, normalK, normalMass), S(0));
   row.tangentSum = sumOf(contact.tangentSpeed, tangentK, tangentMass);
-  // Of a body that nothing turns the arm counts for nothing.
+  // The arm of a body that nothing turns counts for nothing.
   highWater<S>("contact: r x n of a body that turns", response.momentA > S(0) ? row.normalArmA : S(0));
   highWater<S>("contact: r x n of a body that turns", response.momentB > S(0) ? row.normalArmB : S(0));
   highWater<S>("contact: inverse effective mass k", max(normalK, tangentK));

@@ -12,13 +12,14 @@ namespace samestep {
 template <Scalar S>
 inline constexpr S kMaxSum = S(1 << 20);
 
-/// How a pair of bodies answers impulses, relative to the lighter one: the lighter has 1 as its inverse mass.
+/// Response of a pair of bodies to impulses, relative to the lighter one: the lighter has 1 as its inverse
+/// mass.
 template <Scalar S>
 struct PairResponse {
   S massA{}, massB{};      ///< Inverse masses, in [0, 1].
   S momentA{}, momentB{};  ///< Inverse moments, 1/m^2.
 
-  /// To an impulse at the given places: moments far too small for them are held.
+  /// Response to an impulse at the given places: moments far too small for them are clamped.
   PairResponse at(const Vector<S>& armA, const Vector<S>& armB) const;
 };
 
@@ -55,7 +56,7 @@ struct ContactAxes {
   /// m/k, i (r x n)/k along the normal and along the tangent.
   S speedA{}, speedB{}, spinA{}, spinB{};
   S tangentSpeedA{}, tangentSpeedB{}, tangentSpinA{}, tangentSpinB{};
-  /// Of the surfaces along the normal, m; negative where they overlap.
+  /// Separation of the surfaces along the normal, m; negative where they overlap.
   S separation{};
   /// The surface's own speed along the tangent, m/s.
   S surface{};
@@ -63,7 +64,7 @@ struct ContactAxes {
   S friction{};
   /// Accumulated u along the normal and the tangent.
   S normalSum{}, tangentSum{};
-  /// From u back to the speed of the lighter body.
+  /// Scales from u back to the speed of the lighter body.
   S normalScale{}, tangentScale{};
 };
 
@@ -79,7 +80,7 @@ template <Scalar S>
   return dot4(row.normal.x, dv.x, row.normal.y, dv.y, row.normalArmB, spinB, -row.normalArmA, spinA);
 }
 
-/// Along the tangent, m/s, without the surface's own speed.
+/// Speed along the tangent, m/s, without the surface's own speed.
 template <Scalar S>
 [[gnu::always_inline]] inline S tangentSpeed(const ContactAxes<S>& row, const Vector<S>& dv, S spinA,
                                              S spinB) {

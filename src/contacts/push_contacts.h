@@ -11,7 +11,7 @@
 
 namespace samestep {
 
-/// What a shape brings into a contact.
+/// Material of a shape, as a contact needs it.
 template <Scalar S>
 struct Surface {
   S elasticity{};

@@ -9,10 +9,10 @@ namespace {
 /// Directions whose sine is less than this are one.
 template <Scalar S>
 inline constexpr S kSameWay = S(0x1p-6);
-/// How far from a contact a face must be covered on the side on which it could be open.
+/// Distance from a contact in which a face must be covered on the side on which it could be open.
 template <Scalar S>
 inline constexpr S kAlongFace = S(0x1p-6);
-/// How many faces are tried in place of one that is covered.
+/// Number of faces that are tried in place of one that is covered.
 constexpr int kMostTries = 4;
 
 template <Scalar S>
@@ -38,7 +38,7 @@ struct Face {
   Vector<S> before(S place) const { return from + along * place + normal * (radius + kSeamGap<S>); }
 };
 
-/// What the judgement of one contact looks at.
+/// Judgement of one contact: the shapes and faces it looks at.
 template <Scalar S>
 class Seam {
  public:
@@ -59,7 +59,7 @@ class Seam {
     return best;
   }
 
-  /// Whether all of a face that the given points may touch is covered by others.
+  /// True if all of a face that the given points may touch is covered by others.
   bool isCovered(int index, const Vector<S>* points, int count) const {
     const Face<S> face(*own_.still, index);
     S low = face.placeOf(points[0]), high = low;
@@ -71,13 +71,13 @@ class Seam {
     return isCovered(face, low, S(-1)) && isCovered(face, high, S(1));
   }
 
-  /// Whether the corner that the contact is at leaves it its direction; else the face of the still shape to
-  /// take instead, or -1.
+  /// Tells whether the corner that the contact is at leaves it its direction; else the face of the still
+  /// shape to take instead, or -1.
   bool cornerAllows(int& instead) const;
 
  private:
-  /// Whether a place of a face is covered; and so, where what covers it ends toward that side, is what lies
-  /// beyond: in the corner of a room, floor and wall both go on.
+  /// Tells whether a place of a face is covered; and so, where what covers it ends toward that side, is what
+  /// lies beyond: in the corner of a room, floor and wall both go on.
   bool isCovered(const Face<S>& face, S place, S side) const {
     bool covered = false, mayEnd = false;
     const Vector<S> here = face.before(place);
@@ -112,8 +112,8 @@ class Seam {
 /// The directions in which a shape may be touched at a place of its surface.
 template <Scalar S>
 struct OpenDirections {
-  bool isThere = false;  ///< Whether the place belongs to the shape.
-  bool allows = false;   ///< Whether the direction asked for is one of them.
+  bool isThere = false;  ///< True if the place belongs to the shape.
+  bool allows = false;   ///< True if the direction asked for is one of them.
   S nearest{-1};         ///< The cosine of the nearest one, of normals of faces.
 };
 
@@ -163,7 +163,7 @@ int farthestVertex(const PlacedShape<S>& shape, const Vector<S>& n) {
   return best;
 }
 
-/// How far the moving shape is from the line of a face.
+/// Separation of the moving shape from the line of a face.
 template <Scalar S>
 S separationFrom(const SeamContact<S>& contact, int face) {
   const PlacedShape<S>& moving = *contact.moving;
@@ -172,7 +172,7 @@ S separationFrom(const SeamContact<S>& contact, int face) {
   return dot(moving.planes[vertex].v0 - plane.v0, plane.n) - (moving.radius + contact.still->radius);
 }
 
-/// Whether the moving shape is on the outer side of a face for the greater part: what is not comes from
+/// True if the moving shape is on the outer side of a face for the greater part: what is not comes from
 /// elsewhere.
 template <Scalar S>
 bool sticksOut(const SeamContact<S>& contact, int face) {
@@ -201,7 +201,7 @@ bool Seam<S>::cornerAllows(int& instead) const {
   const S first = dot(shape.planes[vertex].n, own_.normal), second = dot(shape.planes[after].n, own_.normal);
   instead = -1;
   if (max(first, second) < nearest - kSameWay<S>) return false;
-  // Of both ends of a segment's line the side that it came from.
+  // A segment's side is the one of its line that both ends came from.
   const bool alike = abs(first - second) <= kSameWay<S>;
   const bool takesFirst = alike ? separationFrom(own_, vertex) > separationFrom(own_, after) : first > second;
   instead = takesFirst ? vertex : after;
@@ -261,7 +261,7 @@ bool isOpenFace(const Seam<S>& seam, int face, const CollisionInfo<S>& info) {
 template <Scalar S>
 void SeamContacts<S>::sort() {
   BB<S> corners = entries_.front().contact.still->box;
-  // Of the lower left corners.
+  // A box is sorted by its lower left corner.
   corners.right = corners.left;
   corners.top = corners.bottom;
   for (const Entry& entry : entries_) {

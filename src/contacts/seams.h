@@ -14,7 +14,7 @@ namespace samestep {
 // would stop at a face that no one can see, or roll over a corner that is none. They are found by asking what
 // the other shapes cover, without being told of neighbours: shapes may be in any order, and come and go.
 
-/// Of neighbours: steps of up to this, m, and gaps of up to the other count as flush.
+/// Tolerances of neighbours: steps of up to this, m, and gaps of up to the other count as flush.
 template <Scalar S>
 inline constexpr S kSeamStep = S(0x1p-9);
 template <Scalar S>
@@ -25,7 +25,7 @@ template <Scalar S>
 struct SeamContact {
   const PlacedShape<S>* moving = nullptr;
   const PlacedShape<S>* still = nullptr;
-  /// From the still shape to the moving one, a unit vector.
+  /// Normal from the still shape to the moving one, a unit vector.
   Vector<S> normal{};
   /// On the surface of the still shape, in the world.
   Vector<S> points[kMaxContactsPerPair]{};
@@ -69,8 +69,8 @@ class SeamContacts {
   struct Entry {
     SeamContact<S> contact;
     std::uint32_t number;
-    S low, high;  ///< Of the still shape's box along the axis.
-    S highest;    ///< Of those up to here.
+    S low, high;  ///< Range of the still shape's box along the axis.
+    S highest;    ///< Highest end of those up to here.
   };
 
   std::vector<Entry> entries_;
@@ -90,7 +90,7 @@ enum class SeamVerdict : std::uint8_t {
 template <Scalar S>
 SeamVerdict judgeSeam(const SeamContacts<S>& all, std::uint32_t which, S margin, CollisionInfo<S>& info);
 
-/// The same collision with the shapes exchanged.
+/// Collision with the shapes exchanged.
 template <Scalar S>
 CollisionInfo<S> exchanged(const CollisionInfo<S>& info) {
   CollisionInfo<S> other = info;
@@ -102,7 +102,7 @@ CollisionInfo<S> exchanged(const CollisionInfo<S>& info) {
   return other;
 }
 
-/// How far the shapes of a collision that has points are apart where they are least.
+/// Separation of the shapes of a collision that has points, where it is least.
 template <Scalar S>
 S leastSeparation(const CollisionInfo<S>& info) {
   const auto apart = [&](int i) { return dot(info.points[i].pointB - info.points[i].pointA, info.normal); };

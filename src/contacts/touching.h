@@ -18,20 +18,20 @@ S separationOf(const Contact<S>& contact, const Vector<S>& normal, const Frame<S
   return dot(b.toWorld(contact.anchorB) - a.toWorld(contact.anchorA), normal);
 }
 
-/// Of the points of a pair that has some.
+/// Separation of the points of a pair that has some, where it is least.
 template <Scalar S>
 S leastSeparation(const Pair<S>& pair, const Vector<S>& normal, const Frame<S>& a, const Frame<S>& b) {
   const S first = separationOf(pair.contacts[0], normal, a, b);
   return pair.count < 2 ? first : min(first, separationOf(pair.contacts[1], normal, a, b));
 }
 
-/// Whether the shapes of a pair that has a contact touch where their bodies stand.
+/// True if the shapes of a pair that has a contact touch where their bodies stand.
 template <Scalar S>
 bool overlaps(const Pair<S>& pair, const Frame<S>& a, const Frame<S>& b) {
   return leastSeparation(pair, rotate(pair.localNormal, a.rotation), a, b) <= kTouching<S>;
 }
 
-/// Whether an impulse of the last step acted between the shapes. Points that a pair has not are 0.
+/// True if an impulse of the last step acted between the shapes. Points that a pair has not are 0.
 template <Scalar S>
 bool wasPushed(const Pair<S>& pair) {
   return pair.contacts[0].normalTotal != S(0) || pair.contacts[1].normalTotal != S(0);

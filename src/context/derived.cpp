@@ -25,7 +25,7 @@ void LocalPlanes<S>::reserve(std::uint32_t count) {
 template <Scalar S>
 std::uint32_t LocalPlanes<S>::use(const Plane<S>* planes, std::uint32_t count) {
   static_assert(std::is_trivially_copyable_v<Plane<S>>);
-  // By bits: zeros of two signs are equal, and not the same.
+  // Planes are compared by bits: zeros of two signs are equal, and not the same.
   const bool same = last_ != kNone && geometries_[last_].count == count && geometries_[last_].users != 0 &&
                     std::memcmp(of(last_), planes, count * sizeof(Plane<S>)) == 0;
   if (same) {
@@ -174,7 +174,7 @@ template <Scalar S>
 void Derived<S>::reserveFor(const Shape<S>& shape) {
   const std::uint32_t count = static_cast<std::uint32_t>(planeCount(shape));
   reserveSurface();
-  // What placed shapes point to may go elsewhere, once nothing can fail that was to make it do so.
+  // Lists that placed shapes point to may go elsewhere, once nothing can fail that was to make it do so.
   const auto reserve = [this](const auto& list, auto&& grow) {
     const Plane<S>* const before = list.data();
     grow();
@@ -199,7 +199,7 @@ void Derived<S>::forgetTouched() {
 
 template <Scalar S>
 void Derived<S>::linkShape(std::uint32_t body, std::uint32_t shape) {
-  // By rising slot. A new shape nearly always has the highest one.
+  // Shapes of a body are linked by rising slot. A new shape nearly always has the highest one.
   std::uint32_t before = lastShape[body];
   if (before != kNone && before > shape) {
     before = kNone;

@@ -17,7 +17,7 @@
 
 namespace samestep {
 
-/// Where a body stood when its shapes were last placed.
+/// Pose of a body when its shapes were last placed.
 template <Scalar S>
 struct PlacedPose {
   Frame<S> frame{};
@@ -36,16 +36,16 @@ class Surfaces {
   void clear() { surfaces_.clear(); }
   /// The number of a surface.
   std::uint32_t number(const Surface<S>& surface) {
-    // By bits: zeros of two signs are equal, and not the same.
+    // Surfaces are compared by bits: zeros of two signs are equal, and not the same.
     const bool same = !surfaces_.empty() && std::memcmp(&surfaces_.back(), &surface, sizeof(Surface<S>)) == 0;
     if (!same) surfaces_.push_back(surface);
     return static_cast<std::uint32_t>(surfaces_.size() - 1);
   }
   const Surface<S>& operator[](std::uint32_t number) const { return surfaces_[number]; }
-  /// Whether there are so many more than shapes that they should be counted anew.
+  /// True if there are so many more than shapes that they should be counted anew.
   bool tooMany(std::size_t shapes) const { return surfaces_.size() > 2 * shapes + 64; }
   void reserve(std::size_t surfaces) { makeRoom(surfaces_, surfaces); }
-  /// Of memory that a copy takes.
+  /// Bytes of memory that a copy takes.
   std::uint64_t bytes() const { return surfaces_.size() * sizeof(Surface<S>); }
   std::size_t size() const { return surfaces_.size(); }
 
@@ -55,13 +55,13 @@ class Surfaces {
   std::vector<Surface<S>> surfaces_;
 };
 
-/// What pairs ask about a shape, close together.
+/// Traits of a shape that pairs ask about, close together.
 template <Scalar S>
 struct alignas(32) ShapeTraits {
   std::uint32_t surface = 0;  ///< Its number.
   std::uint32_t body = 0;
   ShapeFilter filter{};
-  /// From the body's origin, nothing of the shape is beyond; in units of 1 / kReachUnits m.
+  /// Distance from the body's origin beyond which nothing of the shape is; in units of 1 / kReachUnits m.
   std::int32_t reach = 0;
   bool sensor = false;
   bool round = false;    ///< A circle.
@@ -78,7 +78,7 @@ struct alignas(32) ShapeTraits {
   }
 };
 
-/// Whether two shapes whose boxes overlap may collide at all.
+/// True if two shapes whose boxes overlap may collide at all.
 template <Scalar S>
 [[gnu::always_inline]] inline bool mayCollide(const ShapeTraits<S>& a, const ShapeTraits<S>& b) {
   return a.body != b.body && accepts(a.filter, b.filter);
@@ -115,13 +115,13 @@ class LocalPlanes {
   void clear();
   /// Makes room for the planes of one shape more.
   void reserve(std::uint32_t count);
-  /// Where planes stand that are equal to these, bit by bit, for one more user.
+  /// Takes one more user for planes that are equal to these, bit by bit, and returns where they stand.
   std::uint32_t use(const Plane<S>* planes, std::uint32_t count);
   /// One user less, of what use() answered, or kNone.
   void release(std::uint32_t geometry);
   const Plane<S>* of(std::uint32_t geometry) const { return data() + geometries_[geometry].offset; }
   const Plane<S>* data() const { return planes_.data(); }
-  /// Of memory that a copy takes.
+  /// Bytes of memory that a copy takes.
   std::uint64_t bytes() const {
     return planes_.size() * sizeof(Plane<S>) + geometries_.size() * sizeof(Geometry);
   }
@@ -129,7 +129,7 @@ class LocalPlanes {
  private:
   struct Geometry {
     std::uint32_t offset, count, users;
-    std::uint32_t nextFree;  ///< Of those with as many planes.
+    std::uint32_t nextFree;  ///< Next free one of those with as many planes.
   };
 
   std::vector<Plane<S>> planes_;
@@ -146,8 +146,8 @@ struct BodyPairs {
   std::vector<std::uint32_t> fill;
 };
 
-/// What a Space computes from its state and can compute again at any time, by body or shape slot. A saved
-/// world holds a copy, which spares the next step the work.
+/// Data that a Space computes from its state and can compute again at any time, by body or shape slot. A
+/// saved world holds a copy, which spares the next step the work.
 template <Scalar S>
 struct Derived {
   Derived() = default;
@@ -163,11 +163,11 @@ struct Derived {
   std::uint64_t bytes() const;
 
   bool cached = false;
-  // Of all shapes, until one is added, changed or removed.
+  // The hash covers all shapes, until one is added, changed or removed.
   bool shapesHashKnown = false;
   std::uint64_t shapesHash = 0;
   std::vector<PlacedPose<S>> poses;
-  // Of each body in a saved world, instead: whether it stands where its shapes were placed.
+  // A saved world holds this instead: whether each body stands where its shapes were placed.
   std::vector<std::uint8_t> stands;
   std::vector<std::uint32_t> firstShape;
   std::vector<std::uint32_t> lastShape;
@@ -176,14 +176,14 @@ struct Derived {
   std::vector<ShapeTraits<S>> traits;
   std::vector<CircleAround<S>> around;
   Surfaces<S> surfaces;
-  // Whether the surfaces in all pairs that touched in the last step are those of the shapes.
+  // This is true if the surfaces in all pairs that touched in the last step are those of the shapes.
   bool surfacesKnown = false;
-  // Whether pairs came from elsewhere, without the surfaces that callbacks and visits are shown.
+  // This is true if pairs came from elsewhere, without the surfaces that callbacks and visits are shown.
   bool surfacesLacking = false;
   std::vector<std::uint32_t> planeOffset;
   std::vector<Plane<S>> planes;
   LocalPlanes<S> localPlanes;
-  std::vector<std::uint32_t> geometry;  // Of each shape, in localPlanes.
+  std::vector<std::uint32_t> geometry;  // Geometry of each shape, in localPlanes.
   // Bodies that may have been moved by hand since the last step, each once.
   std::vector<std::uint32_t> touched;
   std::vector<std::uint8_t> isTouched;
@@ -193,10 +193,10 @@ struct Derived {
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// Of the Space, who is asked while much is computed; null of a saved world.
+  /// Budget of the Space, asked while much is computed; null in a saved world.
   Budget* budget = nullptr;
 
-  // Of one step, and so in no copy.
+  // The following belong to one step, and so to no copy.
 
   /// Within a step queries see the shapes where it placed them, whatever callbacks have moved: a question
   /// asked there must not change its result.
@@ -233,7 +233,7 @@ struct Derived {
   void growShapes(std::uint32_t slots);
   /// Makes room for what prepareShape keeps of a shape.
   void reserveFor(const Shape<S>& shape);
-  /// The same for takeTraits.
+  /// Makes room for takeTraits.
   void reserveSurface();
   void linkShape(std::uint32_t body, std::uint32_t shape);
   void unlinkShape(std::uint32_t body, std::uint32_t shape);
@@ -248,7 +248,7 @@ struct Derived {
     return firstShape[id.index];
   }
 
-  /// Whether a body has several shapes; whether one that may move has.
+  /// Tells whether a body has several shapes; hasCompound, whether one that may move has.
   bool isCompound(std::uint32_t body) const { return firstShape[body] != lastShape[body]; }
   bool hasCompound() const {
     for (std::uint32_t i = 0; i < firstShape.size(); ++i) {

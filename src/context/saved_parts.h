@@ -6,7 +6,7 @@
 
 namespace samestep {
 
-/// What a saved world consists of.
+/// Parts of a saved world.
 template <Scalar S>
 struct SavedParts {
   SavedRecords<S> records;
@@ -17,7 +17,7 @@ struct SavedParts {
     records.clear();
     derived.forget();
   }
-  // Where memory ends midway, nothing is held.
+  // A list whose memory ends midway holds nothing.
 
   void take(const WorldState<S>& world, const Derived<S>& computed) {
     clear();

@@ -23,7 +23,7 @@ class SavedRecords {
   /// Holds nothing from here on.
   void clear() { used_ = 0; }
   bool empty() const { return used_ == 0; }
-  /// Whose ids those of the world are; see Id::space.
+  /// Number of the Space whose ids those of the world are; see Id::space.
   std::uint32_t space() const { return shapes_.space(); }
   std::uint64_t stamp() const { return empty() ? 0 : stamp_; }
   std::uint64_t bytes() const;

@@ -12,10 +12,10 @@
 
 namespace samestep {
 
-/// What every stage of a step works on. A stage keeps what it needs for itself in a type of its own.
+/// Context that every stage of a step works on. A stage keeps what it needs for itself in a type of its own.
 template <Scalar S>
 struct StepContext {
-  Space<S>& space;  ///< For callbacks, which are handed it.
+  Space<S>& space;  ///< Space that callbacks are handed.
   WorldState<S>& state;
   Derived<S>& derived;
   SpaceWiring<S>& wiring;
@@ -23,7 +23,7 @@ struct StepContext {
   StepEvents<S>& events;
   bool& leftMidway;  ///< See Change.
   S dt{};            ///< Seconds of this step.
-  S dtBefore{};      ///< Of the one before; 0 in the first.
+  S dtBefore{};      ///< Time step of the step before; 0 in the first.
   /// Set by a stage that finds more pairs than the Space may hold: the step ends there, as if it had not
   /// begun.
   bool refused = false;
@@ -31,7 +31,7 @@ struct StepContext {
   // Fewer pairs, or bodies, are not worth waking other workers for.
   static constexpr std::uint32_t kFewPairs = 256;
   static constexpr std::uint32_t kFewBodies = 512;
-  // What a part of the work has at least.
+  // A part of the work has so many at least.
   static constexpr std::uint32_t kPairGrain = 32;
   static constexpr std::uint32_t kBodyGrain = 64;
 
@@ -39,9 +39,9 @@ struct StepContext {
   /// @throws Interrupted
   void pay(std::uint64_t units) { wiring.budget.pay(units); }
   bool isSoft() const { return state.settings.solver == SolverKind::softStep; }
-  /// How far apart two boxes may be for their shapes to be a pair, m.
+  /// Distance that two boxes may have for their shapes to be a pair, m.
   S pairMargin() const { return isSoft() ? state.settings.contactMargin : S(0); }
-  /// Whether both bodies of a pair are static: nothing looks for such a pair.
+  /// True if both bodies of a pair are static: nothing looks for such a pair.
   bool rests(const Pair<S>& pair) const {
     const auto isStatic = [&](ShapeId id) {
       return state.bodies.valueAt(state.shapes.valueAt(id.index).body().index).type() == BodyType::staticBody;

@@ -27,7 +27,7 @@ struct ContactLists {
   std::vector<ImpactEvent<S>> impacts;
   /// Brought about since the last step, to be listed by the next one.
   std::vector<ContactEvent> endsBetween;
-  // As the step began: the pairs that touched, by rising ids, and the velocities by body slot.
+  // These are as the step began: the pairs that touched, by rising ids, and the velocities by body slot.
   std::vector<Touching> touching;
   std::vector<Speed> speeds;
 
@@ -40,14 +40,14 @@ struct ContactLists {
   }
 };
 
-/// What a step tells beside the state, read after it.
+/// Events of a step: what it tells beside the state, read after it.
 template <Scalar S>
 struct StepEvents {
   std::vector<RangeEvent> range;
   CollisionStats collisionStats{};
   std::uint64_t accurateInstead = 0;
   ContactLists<S> contacts;
-  /// Of each body slot, the bits of Body::Held that the step under way noted.
+  /// Bits of Body::Held that the step under way noted, by body slot.
   std::vector<std::uint8_t> held;
 
   void begin(const WorldState<S>& world) { held.assign(world.bodies.slots(), 0); }

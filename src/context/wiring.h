@@ -60,12 +60,12 @@ class BoundHandlers {
   };
 
   std::vector<Entry> entries_;
-  /// How many bindings are of this kind or one before.
+  /// Number of bindings of this kind or one before.
   std::uint32_t ends_[kKinds] = {};
 };
 
-/// What a Space is connected to: functions under their numbers, the kernel, workers, the limit of pairs. No
-/// saved world carries it, and no result depends on it but what functions do and what is refused.
+/// Connections of a Space: functions under their numbers, the kernel, workers, the limit of pairs. No saved
+/// world carries it, and no result depends on it but what functions do and what is refused.
 template <Scalar S>
 struct SpaceWiring {
   template <class Function>
@@ -96,13 +96,13 @@ struct SpaceWiring {
   /// Counts the worlds that came from elsewhere, for who must notice one.
   std::uint64_t worldsBroughtIn = 0;
 
-  /// Where an entry of a number stands, or would.
+  /// Place of the entry of a number, or where it would be.
   template <class Entries>
   static auto placeOf(Entries& entries, CallbackNumber number) {
     return std::lower_bound(entries.begin(), entries.end(), number,
                             [](const auto& entry, CallbackNumber wanted) { return entry.number < wanted; });
   }
-  /// What is registered under a number, or nullptr.
+  /// Functions registered under a number, or nullptr.
   template <class Entry>
   static const Entry* find(const std::vector<Entry>& entries, CallbackNumber number) {
     const auto place = placeOf(entries, number);

@@ -36,7 +36,7 @@ const char* kindOf(BodyType type) {
   return type == BodyType::staticBody ? ": the body is static" : ": the body is kinematic";
 }
 
-/// What a force does to a thing of that inverse mass, kept where sums with gravity cannot overflow.
+/// Acceleration by a force of a thing of that inverse mass, kept where sums with gravity cannot overflow.
 template <Scalar S>
 S answer(S force, const Scaled<S>& inverse) {
   if (force == S(0)) return S(0);
@@ -104,7 +104,7 @@ template <Scalar S>
 bool Body<S>::wellFormed() const {
   if (type_ > BodyType::staticBody || rotates_ > 1) return false;
   if (!(mass_ == S(0) || (mass_ >= kMinMass<S> && mass_ <= kMaxMass<S>))) return false;
-  // What shapes of any supported size and mass can add up to, with room to spare.
+  // Shapes of any supported size and mass add up to no more, with room to spare.
   const Scaled<S> zero{};
   const Scaled<S> large = toScaled(kMaxMoment<S>) * toScaled(kMaxMoment<S>);
   if (!(moment_ >= zero && moment_ <= large)) return false;
@@ -201,7 +201,7 @@ void Body<S>::moveCenter(const Vector<S>& center) {
 
 template <Scalar S>
 void Body<S>::setPosition(const Vector<S>& position) {
-  // What a position function sets is held within the world by the step.
+  // The step clamps what a position function sets to the world.
   requireWithin(position, stepping_ != 0 ? kMaxWorldExtent<S> : extent_, "Body::setPosition: position is ",
                 " m");
 

@@ -8,7 +8,7 @@
 
 namespace samestep {
 
-/// What a Space does with its bodies beyond their public functions: it owns them and moves them, held within
+/// Access of a Space to its bodies beyond their public functions: it owns them and moves them, clamped to
 /// their ranges where a setter would throw.
 template <Scalar S>
 struct BodyAccess {
@@ -19,7 +19,7 @@ struct BodyAccess {
     body.id_ = id;
     body.extent_ = worldExtent;
   }
-  /// Why the body cannot be stepped, or nullptr.
+  /// Reason why the body cannot be stepped, or nullptr.
   static const char* cannotStep(const Body<S>& body) { return body.cannotStep(); }
   static Motion accelerated(const Body<S>& body, const Vector<S>& gravity, S damping, S dt) {
     return body.accelerated(gravity, damping, dt);
@@ -46,7 +46,7 @@ struct BodyAccess {
     if (before != std::tuple(body.type_, body.rotates_, body.mass_, body.moment_)) body.deriveMass();
     body.stepping_ = body.held_ = 0;
   }
-  /// Of a body that is not dynamic: its mass is to be summed over its shapes when it becomes so.
+  /// Makes the mass of a body that is not dynamic be summed over its shapes when it becomes so.
   static void forgetMass(Body<S>& body) { body.forgetMass(); }
   static void forgetBias(Body<S>& body) { body.forgetBias(); }
   static void setBias(Body<S>& body, const Vector<S>& velocity, S angularVelocity) {

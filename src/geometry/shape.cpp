@@ -11,7 +11,7 @@ namespace samestep {
 template <Scalar S>
 VertexList<S>& VertexList<S>::operator=(const VertexList& other) {
   if (this == &other) return *this;
-  // Of fewer the rest is left: what a shape's count leaves out is never looked at.
+  // Room beyond the count is left as it is: it is never looked at.
   makeRoom(other.room_);
   const Vector<S>* from = other.data();
   std::copy(from, from + other.room_, data());
@@ -158,7 +158,7 @@ bool Shape<S>::geometryWellFormed() const {
 
 namespace {
 
-/// Of a segment.
+/// Planes of a segment.
 constexpr int kSegmentPlanes = 3;
 
 template <Scalar S>
@@ -178,7 +178,7 @@ void preparePoly(std::span<const Vector<S>> v, Plane<S>* local) {
   }
 }
 
-/// Whether the second half of the planes is the first turned by 180 degrees, as those of a box around its
+/// True if the second half of the planes is the first turned by 180 degrees, as those of a box around its
 /// body's origin, and stays so bit by bit however it is turned: where zero has no sign.
 template <Scalar S>
 bool halves([[maybe_unused]] const Plane<S>* local, [[maybe_unused]] std::size_t count) {

@@ -13,7 +13,7 @@ struct NearestEdge {
   S distance{};     ///< Metres from the line through the edge, positive outside.
 };
 
-/// Which part of an edge is nearest to a point: -1 where it begins, 1 where it ends, 0 between. A polygon's
+/// Part of an edge that is nearest to a point: -1 where it begins, 1 where it ends, 0 between. A polygon's
 /// edge may be so short that rounding turned it; its normal was turned with the shape.
 template <Scalar S>
 int partOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point) {
@@ -23,7 +23,7 @@ int partOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point) {
   return sign(exactDot(along, point - to)) >= 0 ? 1 : 0;
 }
 
-/// Whether a point lies on the outer side of an edge of a polygon, or on its line. Exact.
+/// True if a point lies on the outer side of an edge of a polygon, or on its line. Exact.
 template <Scalar S>
 bool outsideOfEdge(const PlacedShape<S>& shape, int edge, const Vector<S>& point) {
   const Vector<S> from = shape.planes[(edge == 0 ? shape.count : edge) - 1].v0, to = shape.planes[edge].v0;
@@ -64,7 +64,7 @@ NearestEdge<S> nearestEdge(const PlacedShape<S>& shape, const Vector<S>& point) 
     const int previous = (found.edge == 0 ? shape.count : found.edge) - 1;
     const int next = found.edge + 1 < shape.count ? found.edge + 1 : 0;
     const int beyond = part < 0 ? previous : next;
-    // Of two nearly parallel edges rounding may have preferred the wrong one: the vertex between them is
+    // Rounding may have preferred the wrong one of two nearly parallel edges: the vertex between them is
     // nearest only if both say so.
     if (shape.type == ShapeType::segment || partOfEdge(shape, beyond, point) == -part) {
       const bool outside = shape.type == ShapeType::segment || found.distance > noise ||

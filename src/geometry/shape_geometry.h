@@ -6,8 +6,8 @@
 
 namespace samestep {
 
-// What makes the geometry of a shape acceptable, and its mass: each said once, for the factories, the setters
-// and what is read from outside.
+// These say what makes the geometry of a shape acceptable, and its mass: each once, for the factories, the
+// setters and what is read from outside.
 
 template <Scalar S>
 bool finite(const Vector<S>& v) {
@@ -32,7 +32,7 @@ bool sizeSupported(std::span<const Vector<S>> points, S radius) {
   return extentOf(points, radius) <= limit;
 }
 
-/// What all shapes require of their points and radius.
+/// Requires of points and radius what all shapes must have.
 /// @throws ValueOutOfRange, NegativeRadius, SizeOutOfRange
 /// @param what  for the error: "a circle"
 template <Scalar S>
@@ -49,7 +49,7 @@ void requireSupported(std::span<const Vector<S>> points, S radius, const char* w
                               " m, the most allowed, from the origin of the body");
 }
 
-/// Whether the points go counter-clockwise round a convex polygon with no straight angle. Every vertex is
+/// True if the points go counter-clockwise round a convex polygon with no straight angle. Every vertex is
 /// held against every edge: a star turns left everywhere too.
 template <Scalar S>
 bool strictlyConvex(std::span<const Vector<S>> points) {
@@ -81,7 +81,7 @@ void requireMass(S mass, const char* asked) {
   require<Fault::MassOutOfRange>(massSupported(mass), asked, is, mass, " kg, allowed are 0 and ", kMinMass<S>,
                                  " to ", kMaxMass<S>, " kg");
 }
-/// What elasticity and friction require, of a shape or of a contact.
+/// Requires of elasticity and friction what a shape or a contact must have.
 /// @param is  "Shape::setFriction: friction is "
 /// @throws ValueOutOfRange, the fault F for what is negative
 template <Fault F, Scalar S>
@@ -98,7 +98,7 @@ ShapeMassInfo<S> segmentMassInfo(S mass, const Vector<S>& a, const Vector<S>& b,
 template <Scalar S>
 ShapeMassInfo<S> polyMassInfo(S mass, std::span<const Vector<S>> vertices, S radius);
 
-/// The same unit and squares at the precision masses are kept with.
+/// Square of the length in the same unit, at the precision masses are kept with.
 template <Scalar S>
 Scaled<S> scaledLengthSq(const Vector<S>& v) {
   return toScaled(exactDot(v, v));

@@ -108,7 +108,7 @@ void cutByPoly(const PlacedShape<S>& shape, const Vector<S>& a, const Vector<S>&
   for (int i = 0; i < shape.count; ++i) {
     const Plane<S>& edge = shape.planes[i];
     const S from = dot(edge.n, a - edge.v0), to = dot(edge.n, b - edge.v0);
-    // Along the line of the edge it may still come to the edge, from the side.
+    // A point that goes along the line of the edge may still come to the edge, from the side.
     if (from == S(0) && to == S(0)) continue;
     if (from >= S(0)) {
       if (to > S(0) || to == from) return;
@@ -173,7 +173,7 @@ SegmentQueryInfo<S> segmentQuery(const PlacedShape<S>& shape, const Vector<S>& a
       touchPoly(shape, radius, a, b, best);
       break;
   }
-  // What begins in touch hits, and so does what ends in touch, by the same measure.
+  // A circle that begins in touch hits, and so does one that ends in touch, by the same measure.
   if (!best.hit && contains(inflate(shape.box, radius), b)) {
     const PointQueryInfo<S> end = pointQuery(shape, b);
     if (end.distance <= radius) return {true, S(1), end.point, end.gradient};

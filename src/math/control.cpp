@@ -20,7 +20,7 @@ struct HullPart {
   bool emitPivotFirst;  // The part left of the pivot is done.
 };
 
-/// Whether a point next to the line from a to b lies farther than the tolerance beyond an end.
+/// True if a point next to the line from a to b lies farther than the tolerance beyond an end.
 template <Scalar S>
 bool beyondEnd(const Vector<S>& point, const Vector<S>& a, const Vector<S>& b, S tolerance) {
   if (sign(exactDot(point - a, b - a)) < 0) return !near(point, a, tolerance);
@@ -39,7 +39,7 @@ Points<S> partition(Points<S> points, const Vector<S>& a, const Vector<S>& b, S 
   while (head < end) {
     const Wide<S> area = exactCross(points[head] - a, along);
     if (area > limit || (sign(area) > 0 && beyondEnd(points[head], a, b, tolerance))) {
-      // Of several equally far, which lie on one line, only the ends are corners of the hull.
+      // Only the ends of several equally far points, which lie on one line, are corners of the hull.
       const bool onward = area == farthest && sign(exactDot(points[head] - points[pivot], along)) > 0;
       if (area > farthest || onward) {
         farthest = area;

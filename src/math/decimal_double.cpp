@@ -381,7 +381,7 @@ DecimalStatus parseDecimal(std::string_view text, double& out) {
 
 std::string formatDecimal(double x) { return std::string(textOf(x).view()); }
 
-/// For the texts of errors: the same, as far as there is room.
+/// Writes a number for the texts of errors, as far as there is room.
 /// @return where it ended
 char* writeDecimal(char* to, const char* end, double x) noexcept;
 char* writeDecimal(char* to, const char* end, double x) noexcept {

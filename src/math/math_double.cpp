@@ -87,7 +87,7 @@ struct ReducedAngle {
   unsigned quarters;
 };
 
-/// For any finite angle >= 0.5: the product with 2/pi in integers, only those words of it that matter.
+/// Reduces any finite angle >= 0.5: the product with 2/pi in integers, only those words of it that matter.
 ReducedAngle reduceExactly(double magnitude) {
   constexpr int kWords = 8;
   const int exponent = biasedExponent(magnitude) - 1075;

@@ -107,7 +107,7 @@ inline constexpr Pair kExp2Table[64] = {{0x1.0000000000000p+0, 0x0.0p+0},
                                         {0x1.f50765b6e4540p+0, 0x1.9d3e12dd8a18bp-54},
                                         {0x1.fa7c1819e90d8p+0, 0x1.74853f3a5931ep-55}};
 
-// For a mantissa m in [1, 2) of cell i = floor((m - 1) * 128): a short number c near 1/m, and
+// Each row is of a mantissa m in [1, 2) in cell i = floor((m - 1) * 128): a short number c near 1/m, and
 // -log2(c), less 1 from cell kLog2Fold on; high is a multiple of 2^-42, so that an exponent adds exactly.
 inline constexpr int kLog2Fold = 53;
 struct Log2Cell {

@@ -21,8 +21,8 @@ SupportEdge<S> edgeTo(const PlacedShape<S>& shape, int vertex) {
   return {shape.planes[before].v0, shape.planes[vertex].v0, before, vertex};
 }
 
-/// Of the two edges at the vertex farthest along n, the one whose normal is nearer to n: on whose side of the
-/// line between the two normals n lies. Of nearly parallel edges rounded cosines would tell nothing.
+/// Edge at the vertex farthest along n whose normal is nearer to n: the one on whose side of the line between
+/// the two normals n lies. Of nearly parallel edges rounded cosines would tell nothing.
 /// MIS: supportEdgeForPoly, supportEdgeForSegment
 template <Scalar S>
 SupportEdge<S> edgeAt(const PlacedShape<S>& shape, int vertex, const Vector<S>& n) {

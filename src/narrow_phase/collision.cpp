@@ -26,7 +26,7 @@ Vector<S> tangent(const PlacedShape<S>& segment, int end) {
   return end == 0 ? segment.planes[2].v0 : segment.planes[2].n;
 }
 
-/// Whether the end of a segment may touch what lies in the direction `away`: not on its neighbour's side.
+/// True if the end of a segment may touch what lies in the direction `away`: not on its neighbour's side.
 /// @param vertex  the end, or -1: no end touches
 template <Scalar S>
 bool endMayTouch(const PlacedShape<S>& shape, int vertex, const Vector<S>& away) {
@@ -40,7 +40,7 @@ void circleToCorner(const PlacedShape<S>& circle, const PlacedShape<S>& other, c
   const Vector<S> corner = other.planes[nearest.vertex].v0;
   const Vector<S> delta = corner - circle.center();
   const Wide<S> apart = exactDot(delta, delta), limit = exactProduct(reach, reach);
-  // As in Chipmunk, a segment that is only just met is not touched, a polygon is.
+  // A segment that is only just met is not touched, a polygon is, as in Chipmunk.
   if (apart > limit || (apart == limit && other.type == ShapeType::segment)) return;
   const Vector<S> fallback =
       other.type == ShapeType::segment ? other.planes[1].n : -other.planes[nearest.edge].n;
@@ -65,7 +65,7 @@ void circleToEdges(const PlacedShape<S>& circle, const PlacedShape<S>& other, S 
   info.push(c + n * circle.radius, c + n * (nearest.distance - other.radius), 0);
 }
 
-/// Whether the ends of segments allow shapes with edges to touch there.
+/// True if the ends of segments allow shapes with edges to touch there.
 template <Scalar S>
 bool endsMayTouch(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest) {
   return endMayTouch(a, closest.vertexA, closest.normal) && endMayTouch(b, closest.vertexB, -closest.normal);
@@ -107,7 +107,7 @@ SupportEdge<S> namedEdge(const PlacedShape<S>& shape, const ClosestPoints<S>& cl
   return {shape.planes[from].v0, shape.planes[to].v0, from, to};
 }
 
-/// Whether the places of each point lie opposite each other.
+/// True if the places of each point lie opposite each other.
 template <Scalar S>
 bool areOpposite(const CollisionInfo<S>& info) {
   bool all = true;
@@ -147,7 +147,7 @@ void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId 
   const SupportEdge<S> onA = closest.vertexA >= 0 ? edgeAt(a, closest.vertexA, n) : namedEdge(a, closest, 8);
   const SupportEdge<S> onB = closest.vertexB >= 0 ? edgeAt(b, closest.vertexB, -n) : namedEdge(b, closest, 0);
   const bool facing = clip(onA, a.radius, onB, b.radius, n, margin, info);
-  // Of two corners the edges need not lie opposite each other, only their ends.
+  // The edges of two corners need not lie opposite each other, only their ends.
   const bool corners = closest.vertexA >= 0 && closest.vertexB >= 0;
   if (info.count > 0 && (facing || (corners && areOpposite(info)))) [[likely]]
     return;
@@ -173,7 +173,7 @@ void edgesToPoly(const PlacedShape<S>& a, const PlacedShape<S>& b, S margin, Col
   touchNearest(a, b, start, margin, info, stats);
 }
 
-/// The same contact with the shapes exchanged.
+/// Exchanges the shapes of a contact.
 template <Scalar S>
 void exchange(CollisionInfo<S>& info) {
   info.normal = -info.normal;

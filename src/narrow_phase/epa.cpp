@@ -11,7 +11,7 @@ template <Scalar S>
 struct HullEdge {
   MinkowskiPoint<S> from;
   Vector<S> inward;  // Unit normal.
-  S distance{};  // Of the edge from the origin, as it is along `inward`: at most 0 round an origin inside.
+  S distance{};      // From the origin along `inward`: at most 0 round an origin inside.
 };
 
 /// The polygon grows by at most one vertex in each iteration.
@@ -31,8 +31,8 @@ void measure(HullEdge<S>& edge, const MinkowskiPoint<S>& to) {
   edge.distance = dot(edge.inward, edge.from.ab);
 }
 
-/// Where the place of an edge's line that is nearest to the origin lies: -1 before the edge, 1 behind it, 0
-/// on it.
+/// Side of the place of an edge's line that is nearest to the origin: -1 before the edge, 1 behind it, 0 on
+/// it.
 template <Scalar S>
 int sideOfFoot(const Vector<S>& from, const Vector<S>& to) {
   if (sign(exactDot(to - from, from)) > 0) return -1;
@@ -57,7 +57,7 @@ int nearest(const HullEdge<S>* hull, int count) {
   return best;
 }
 
-/// Whether a point is a vertex of the polygon already. In double, where a vertex may seem to lie outside of
+/// True if a point is a vertex of the polygon already. In double, where a vertex may seem to lie outside of
 /// an edge that is not its own, it need not be an end of that edge.
 template <Scalar S>
 bool isVertex(const HullEdge<S>* hull, int count, const Vector<S>& point) {
@@ -67,7 +67,7 @@ bool isVertex(const HullEdge<S>* hull, int count, const Vector<S>& point) {
   return false;
 }
 
-/// Whether c lies outside of the edge from a to b; in double only where rounding cannot have moved it there.
+/// True if c lies outside of the edge from a to b; in double only where rounding cannot have moved it there.
 /// Points in line with the edge would else be put in between its ends, wherever they are, and the polygon
 /// turned inside out.
 template <Scalar S>
@@ -89,7 +89,7 @@ template <Scalar S>
 int insert(const HullEdge<S>* hull, int count, int at, const MinkowskiPoint<S>& p, HullEdge<S>* grown) {
   grown[0].from = p;
   int kept = 1;
-  bool adjacent = false;  // Whether the last vertex kept is followed by this one in the old polygon too.
+  bool adjacent = false;  // True if the last vertex kept is followed by this one in the old polygon too.
   for (int i = 0; i < count; ++i) {
     const int index = at + 1 + i < count ? at + 1 + i : at + 1 + i - count;
     const int after = index + 1 < count ? index + 1 : 0;

@@ -7,8 +7,9 @@
 
 namespace samestep {
 
-/// How deep two shapes overlap and along which normal, by growing a polygon inside their Minkowski difference
-/// until its edge nearest to the origin is one of the difference's own (expanding polytope algorithm).
+/// Finds how deep two shapes overlap and along which normal, by growing a polygon inside their Minkowski
+/// difference until its edge nearest to the origin is one of the difference's own (expanding polytope
+/// algorithm).
 /// @param v0, v1, v2  vertices of the difference, clockwise, with the origin between them
 /// @throws SameVertices (an internal error) where an edge of that polygon has no length
 /// MIS: EPA

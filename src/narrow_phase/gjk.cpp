@@ -8,7 +8,7 @@
 namespace samestep {
 namespace {
 
-/// Which part of an edge is nearest to the origin. MIS: closestT, without its number
+/// Part of an edge that is nearest to the origin. MIS: closestT, without its number
 enum class Part { from, inside, to };
 
 template <Scalar S>
@@ -24,8 +24,8 @@ template <Scalar S>
 struct Edge {
   MinkowskiPoint<S> v0, v1;
   Part part{};
-  Vector<S> search;  // From the nearest part towards the origin.
-  S size{};          // Of the difference as far as it was seen, m; only in double.
+  Vector<S> search;  // Direction from the nearest part towards the origin.
+  S size{};          // Size of the difference as far as it was seen, m; only in double.
 
   // The end that is nearest, where one is.
   const MinkowskiPoint<S>& corner() const { return part == Part::from ? v0 : v1; }
@@ -42,7 +42,7 @@ bool isZero(const Vector<S>& v) {
   return v == Vector<S>();
 }
 
-/// Whether a vertex of the difference is the origin as far as signs of products with other vertices can tell.
+/// True if a vertex of the difference is the origin as far as signs of products with other vertices can tell.
 /// In double that is so long before it is zero: what is added to a vertex so much farther away is lost, and a
 /// search that took the rest for a direction would go in a ring.
 /// @param size  of the difference as far as it was seen, m
@@ -77,7 +77,7 @@ void look(Edge<S>& edge) {
   edge.search = isZero(across) ? Vector<S>(S(-1), S(0)) : across;
 }
 
-/// How far an edge is from the origin, m, and what rounding may make of that.
+/// Distance of an edge from the origin, m, and what rounding may make of that.
 template <Scalar S>
 struct Reach {
   S distance{}, rounding{};
@@ -116,22 +116,21 @@ ClosestPoints<S> closestPoints(const Edge<S>& edge) {
   return result;
 }
 
-/// By how much a direction separates the shapes, m.
+/// Distance by which a direction separates the shapes, m.
 template <Scalar S>
 S separationAlong(const SupportPair<S>& pair, const Vector<S>& n) {
   return dot(pair.farthest(-n).ab, n);
 }
 
-/// What to answer in double when rounding leads the search away again or in a ring: of two edges the one
-/// whose normal separates more. A corner that seems nearer may lie on an edge that is all but in line with
-/// it.
+/// Answer in double when rounding leads the search away again or in a ring: of two edges the one whose normal
+/// separates more. A corner that seems nearer may lie on an edge that is all but in line with it.
 template <Scalar S>
 ClosestPoints<S> betterOf(const SupportPair<S>& pair, const Edge<S>& before, const Edge<S>& now) {
   const ClosestPoints<S> first = closestPoints(before), second = closestPoints(now);
   return separationAlong(pair, second.normal) > separationAlong(pair, first.normal) ? second : first;
 }
 
-/// Whether the edge from v0 to p, and not the one from p to v1, holds the point of the triangle nearest to
+/// True if the edge from v0 to p, and not the one from p to v1, holds the point of the triangle nearest to
 /// the origin, which lies outside of the triangle or on its rim. Decided by signs alone: a point outside of
 /// one edge only is nearest to that edge; one outside of both is nearest to the edge that leads towards it.
 template <Scalar S>

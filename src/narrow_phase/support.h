@@ -53,13 +53,13 @@ struct SupportPair {
   MinkowskiPoint<S> farthest(const Vector<S>& n) const { return vertex(a.farthest(-n), b.farthest(n)); }
 };
 
-/// Whether c lies to the left of the way from a to b, strictly. In double the form that treats a and b alike.
+/// True if c lies to the left of the way from a to b, strictly. In double the form that treats a and b alike.
 template <Scalar S>
 bool leftOf(const Vector<S>& a, const Vector<S>& b, const Vector<S>& c) {
   return sign(exactCross(b - a, (a - c) + (b - c))) < 0;
 }
 
-/// Where two shapes are nearest, or overlap least. MIS: ClosestPoints
+/// Closest points of two shapes, or those of least overlap. MIS: ClosestPoints
 template <Scalar S>
 struct ClosestPoints {
   Vector<S> normal;  ///< Unit, from A to B.

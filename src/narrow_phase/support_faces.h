@@ -17,7 +17,7 @@ struct FaceAxis {
   S separation{};    ///< Metres from the face to the nearest vertex of the other shape; negative: overlap.
   int face = 0;      ///< The number of the vertex the face ends at.
   int vertex = 0;    ///< The other shape's vertex that is nearest, of equals the first.
-  bool onB = false;  ///< Whether it is B's face.
+  bool onB = false;  ///< True if it is B's face.
 
   /// A start for the next search; no id of gjk.
   std::uint32_t id() const { return kTag | (onB ? kOnB : 0u) | static_cast<std::uint32_t>(face); }
@@ -64,7 +64,7 @@ template <class Number>
   }
 }
 
-/// How far a face is from the nearest vertex of another shape.
+/// Separation of a face from the nearest vertex of another shape.
 template <class Way, Scalar S>
 FaceAxis<S> separationAt(const PlacedShape<S>& shape, int face, const PlacedShape<S>& other, bool onB) {
   const Plane<S>& plane = shape.planes[face];
@@ -90,7 +90,7 @@ struct FarthestFace {
   FarthestFace(const PlacedShape<S>& shape, const Place* own, const Place* others, int otherCount) {
     const auto apart = [&](int i) {
       const auto n = Way::unit(shape.planes[i].n);
-      // Without branches: which vertex it is, is seldom asked.
+      // The loop has no branches: which vertex it is, is seldom asked.
       typename Way::Number least = Way::along(others[0], n);
       for (int j = 1; j < otherCount; ++j) least = min(least, Way::along(others[j], n));
       return least - Way::along(own[i], n);
@@ -104,7 +104,7 @@ struct FarthestFace {
   }
 };
 
-/// Up to here, looking at every vertex for every face is faster than searching.
+/// Number of pairs up to which looking at every vertex for every face is faster than searching.
 inline constexpr int kMaxFacePairs = 64;
 
 template <class Way, Scalar S>
@@ -129,8 +129,8 @@ FaceAxis<S> searchFaces(const PlacedShape<S>& a, const PlacedShape<S>& b, S reac
   for (int i = 0; i < a.count; ++i) ofA[i] = Way::place(a.planes[i].v0 - origin);
   for (int i = 0; i < b.count; ++i) ofB[i] = Way::place(b.planes[i].v0 - origin);
   const FarthestFace<Way> faceOfA(a, ofA, ofB, b.count), faceOfB(b, ofB, ofA, a.count);
-  // Of two faces that lie flat on each other it is A's, whatever rounding makes of it: the answer stays the
-  // same from step to step, and a segment is touched in its face, not at its end.
+  // The reference face of two that lie flat on each other is A's, whatever rounding makes of it: the answer
+  // stays the same from step to step, and a segment is touched in its face, not at its end.
   const bool onB = faceOfB.separation > faceOfA.separation + Way::length(kFlat<S>);
   const int face = onB ? faceOfB.face : faceOfA.face;
   return face == old.face && onB == old.onB ? old : axisOf(face, onB);
@@ -157,7 +157,7 @@ FaceAxis<S> bestFace(const PlacedShape<S>& a, const PlacedShape<S>& b, S reach, 
 template <Scalar S>
 inline constexpr S kShortFace = S(0x1p-16);
 
-/// Whether the nearest vertex lies above the inside of the face, or below it: then, apart, nothing of the
+/// True if the nearest vertex lies above the inside of the face, or below it: then, apart, nothing of the
 /// shapes is nearer. No claim is made for a short face.
 template <Scalar S>
 bool facesVertex(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<S>& axis) {

@@ -13,7 +13,7 @@ inline constexpr S kMet = S(0x1p-15);
 /// Steps towards each other after which shapes that have not met pass each other.
 constexpr int kMaxAdvances = 16;
 
-/// How far two shapes are apart, and along which normal, from A to B.
+/// Distance of two shapes, and the normal along which it is, from A to B.
 template <Scalar S>
 struct Gap {
   S distance{};

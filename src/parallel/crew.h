@@ -37,7 +37,7 @@ class Crew {
     size_ = size;
     always_ = sharing == Sharing::always;
   }
-  /// Whether there is anybody to share with, and enough to do: at least `least` of something.
+  /// True if there is anybody to share with, and enough to do: at least `least` of something.
   bool helpsWith(std::uint64_t count, std::uint64_t least) const {
     return size_ > 1 && (always_ || count >= least);
   }
@@ -156,13 +156,14 @@ class Crew {
   void* leadData_ = nullptr;
   std::uint32_t leading_ = kNobody;
   std::uint32_t round_ = 0;
-  // Of the round.
+  // The following belong to the round.
   void (*part_)(void*, std::uint32_t, std::uint32_t) = nullptr;
   void* partData_ = nullptr;
   std::uint32_t count_ = 0;
   std::uint32_t ranges_ = 0;
 
-  // Whether there is a leader, whether it is done. Some processors have no instructions for single bytes.
+  // These tell whether there is a leader and whether it is done. Some processors have no instructions for
+  // single bytes.
   alignas(64) std::atomic<std::uint32_t> led_{0};
   std::atomic<std::uint32_t> ended_{0};
   alignas(64) std::atomic<std::uint32_t> announced_{0};

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-// Without threads there is nobody to wait for.
+// A build without threads has nobody to wait for.
 #if !defined(__wasm__) || defined(__EMSCRIPTEN_PTHREADS__)
 #define SAMESTEP_THREADS 1
 #include <thread>
@@ -11,8 +11,8 @@
 
 namespace samestep {
 
-/// What a thread does while it waits for another: at first hardly anything, then it lets others run, which
-/// may be whom it waits for.
+/// Wait of a thread for another: at first it does hardly anything, then it lets others run, which may be whom
+/// it waits for.
 class Idle {
  public:
   void wait() {
@@ -28,7 +28,7 @@ class Idle {
 #endif
     }
   }
-  /// How often it has waited.
+  /// Number of times it has waited.
   std::uint32_t rounds() const { return rounds_; }
 
  private:

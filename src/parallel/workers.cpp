@@ -18,8 +18,8 @@ namespace samestep {
 #ifdef SAMESTEP_THREADS
 
 struct WorkerPool::Impl {
-  /// How often a thread looks for tasks before it sleeps: some tenths of a millisecond, as a step has several
-  /// parts.
+  /// Number of times a thread looks for tasks before it sleeps: some tenths of a millisecond, as a step has
+  /// several parts.
   static constexpr std::uint32_t kAwakeRounds = 600;
 
   std::mutex running;  ///< One run at a time.
@@ -29,7 +29,7 @@ struct WorkerPool::Impl {
   void* data = nullptr;
   int begun = 0;  ///< Tasks that someone has begun.
   std::vector<std::uint8_t> taken;
-  bool sleeping = false;  ///< Whether run() waits on allDone.
+  bool sleeping = false;  ///< True while run() waits on allDone.
   bool ending = false;
   std::atomic<std::uint32_t> runs{0};
   std::atomic<int> unfinished{0};

@@ -93,7 +93,7 @@ class WorldReader {
     return count;
   }
 
-  // What follows from the fields of a record is computed, then the record is checked: the flaw or null.
+  // `accept` computes what follows from the fields of a record, then checks the record: the flaw or null.
 
   const char* accept(BodyId id, Body<S>& body) {
     body.derive();

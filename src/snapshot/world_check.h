@@ -37,7 +37,7 @@ const char* flawOfContact(const Contact<S>& contact) {
   return good ? nullptr : "a contact is out of range";
 }
 
-/// Of normal and points that the next step may solve without colliding the shapes again.
+/// Flaw of a normal and points that the next step may solve without colliding the shapes again.
 template <Scalar S>
 const char* flawOfKept(const Pair<S>& pair) {
   const S far = S(2 * kMaxExtent), slack = ratio<S>(1, 64);

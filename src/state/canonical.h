@@ -15,7 +15,7 @@ namespace samestep {
 template <unsigned kSize>
 [[gnu::always_inline]] inline void storeLittleEndian(std::uint8_t* to, std::uint64_t value) {
   if constexpr (std::endian::native == std::endian::little) {
-    // The same bytes; compilers do not always see that the loop is one store.
+    // This stores the same bytes; compilers do not always see that the loop is one store.
     std::memcpy(to, &value, kSize);
   } else {
     for (unsigned i = 0; i < kSize; ++i) to[i] = static_cast<std::uint8_t>(value >> (8 * i));
@@ -64,7 +64,7 @@ class CanonicalWriter {
   template <Scalar S>
   void put(const Vector<S>& value) {
     if constexpr (std::endian::native == std::endian::little && requires { sink_.reserve(16u); }) {
-      // The same bytes in one go.
+      // This stores the same bytes in one go.
       static_assert(sizeof value == 16);
       std::memcpy(sink_.reserve(sizeof value), &value, sizeof value);
     } else {

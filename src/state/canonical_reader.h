@@ -38,7 +38,7 @@ class ByteReader {
   std::uint64_t load() {
     return loadLittleEndian<kSize>(take(kSize).data());
   }
-  /// What is left.
+  /// Bytes that are left.
   std::span<const std::uint8_t> rest() const { return bytes_.subspan(static_cast<std::size_t>(offset_)); }
 
  private:
@@ -124,7 +124,7 @@ class FieldReader {
   Source& source_;
 };
 
-/// Of canonical bytes.
+/// Reader of canonical bytes.
 using CanonicalReader = FieldReader<ByteReader>;
 
 }  // namespace samestep

@@ -14,8 +14,8 @@
 
 namespace samestep {
 
-/// How a number of a record is told, two bits each. A writer uses the first that fits and a reader insists on
-/// it: a list of records has one encoding only.
+/// Form of a number of a record, two bits each. A writer uses the first that fits and a reader insists on it:
+/// a list of records has one encoding only.
 enum class CompactCode : std::uint8_t {
   asBefore = 0,   ///< Equal to the number at the same place of the record before; before the first: zero.
   zero = 1,       ///< Zero.
@@ -94,7 +94,7 @@ class CompactWriter {
       before_[index_] = value;
       twoBack_ = oneBack_;
       oneBack_ = value;
-      // Written in any case, and kept only if it is needed: no branch to guess.
+      // The bytes are written in any case, and kept only if they are needed: no branch to guess.
       storeLittleEndian<kSize>(to_, value);
       to_ += code == static_cast<unsigned>(CompactCode::given) ? kSize : 0;
       codes_ |= code << (2 * (index_ % kCompactGroup));
@@ -168,7 +168,7 @@ class CompactReader {
           end_(start_ + bytes.rest().size()),
           before_(before.data()) {}
 
-    /// Of the record.
+    /// Offset of the record.
     std::uint64_t offset() const { return bytes_.offset(); }
 
     template <unsigned kSize>

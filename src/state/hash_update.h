@@ -9,7 +9,7 @@ namespace samestep {
 /// no inline function with other sources.
 using HashUpdate = void (*)(void* state, const void* bytes, std::size_t size);
 
-/// With AVX2: for a processor that has it. Null where the compiler does not know it.
+/// Update with AVX2: for a processor that has it. Null where the compiler does not know it.
 extern const HashUpdate hashUpdateAvx2;
 
 }  // namespace samestep

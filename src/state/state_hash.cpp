@@ -14,7 +14,7 @@ void update(void* state, const void* bytes, std::size_t size) {
 
 HashSink::HashSink(KernelTarget target) : update_(update) {
   const KernelTarget next = nextBestKernel(target);
-  // What has AVX-512 has AVX2.
+  // A processor that has AVX-512 has AVX2.
   const bool has = next == KernelTarget::avx2 || next == KernelTarget::avx512;
   if (has && hashUpdateAvx2 != nullptr) update_ = hashUpdateAvx2;
   XXH3_64bits_reset(&state_);

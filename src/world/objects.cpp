@@ -97,7 +97,7 @@ void Objects<S>::checkShape(const Shape<S>& shape, const Body<S>& body) {
                                  body.type() == BodyType::staticBody ? " m" : " m for a body that moves");
 }
 
-/// What the shapes of a body weigh together, with `by`, unless it is null, in place of the one in the slot
+/// Mass of the shapes of a body together, with `by`, unless it is null, in place of the one in the slot
 /// `replaced`, if there is one. By rising slot, so that it does not matter which came first.
 template <Scalar S>
 MassProperties<S> Objects<S>::massOfShapes(Context& world, BodyId id, std::uint32_t replaced,
@@ -149,7 +149,7 @@ MassProperties<S> Objects<S>::massOfShapes(Context& world, BodyId id, std::uint3
   return {saturated<S>(mass), moment, {toScalar<S>(x), toScalar<S>(y)}};
 }
 
-/// Whether any shape of a body has mass, with `by` in place of one of them as in massOfShapes.
+/// True if any shape of a body has mass, with `by` in place of one of them as in massOfShapes.
 template <Scalar S>
 bool Objects<S>::anyShapeWeighs(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by) {
   if (by != nullptr && by->mass() > S(0)) return true;
@@ -234,7 +234,7 @@ void Objects<S>::replace(Context& world, ShapeId id, const Shape<S>& shape, bool
   const std::span<const Vector<S>> before = kept.vertices(), after = next.vertices();
   const bool sameGeometry = next.type() == kept.type() && next.radius() == kept.radius() &&
                             std::equal(before.begin(), before.end(), after.begin(), after.end());
-  // Where a shape without mass has its centroid is nothing to its body.
+  // A body has nothing of the centroid of a shape without mass.
   const bool weighs = next.mass() > S(0) || kept.mass() > S(0);
   const bool sameMass = !weighs || next.massInfo() == kept.massInfo();
   if (!sameGeometry || !sameMass) {

@@ -17,7 +17,7 @@ class PostStepQueue {
   using Function = void (*)(Space<S>& space, std::uint64_t key, void* data);
 
   bool running() const { return running_; }
-  /// How many there are, those that ran in the go under way included: a place for dropFrom.
+  /// Number of callbacks, those that ran in the go under way included: a place for dropFrom.
   std::size_t size() const { return waiting_.size(); }
   /// Forgets those added since the queue had a size: what they were to do belongs to what has not happened.
   void dropFrom(std::size_t size) {
@@ -75,7 +75,8 @@ class PostStepQueue {
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  /// Where the table has a key, or would: it has a power of two of places, at least half of them free.
+  /// Place of a key in the table, or where it would be: it has a power of two of places, at least half of
+  /// them free.
   std::uint32_t& placeOf(std::uint64_t key) {
     const std::size_t last = places_.size() - 1;
     std::size_t at = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 32) & last;
@@ -92,7 +93,7 @@ class PostStepQueue {
   }
 
   std::vector<Callback> waiting_;
-  /// By key, the last callback that was added under it.
+  /// Place of the last callback that was added under a key.
   std::vector<std::uint32_t> places_;
   std::size_t done_ = 0;
   bool running_ = false;

@@ -10,7 +10,7 @@
 
 namespace samestep {
 
-/// What a Space has beside its state.
+/// Parts of a Space beside its state.
 template <Scalar S>
 struct SpaceParts {
   Derived<S> derived;
@@ -19,7 +19,7 @@ struct SpaceParts {
   StepEvents<S> events;
   Step<S> step;
   PostStepQueue<S> postStep;
-  // Of queries: keys found.
+  // Queries note the keys found here.
   std::vector<std::uint32_t> found;
   std::vector<std::uint32_t> foundInOne;
 };

@@ -70,7 +70,8 @@ void Space<S>::setSettings(const Settings<S>& settings) {
     state_.bodies.each(
         [&](BodyId id, Body<S>& body) { BodyAccess<S>::attach(body, id, settings.worldExtent); });
   }
-  // What sequential impulses left to push in the next step means nothing to another solver, nor later.
+  // The rest that sequential impulses left to push in the next step means nothing to another solver, nor
+  // later.
   if (otherSolver) state_.bodies.each([](BodyId, Body<S>& body) { BodyAccess<S>::forgetBias(body); });
   if (!otherContacts) return;
   for (Pair<S>& pair : state_.pairs) pair.manifold = Manifold::unknown;

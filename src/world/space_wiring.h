@@ -144,7 +144,7 @@ std::uint64_t Space<S>::work() const {
   return parts_->wiring.budget.spent();
 }
 
-// Who computes.
+// The following choose who computes.
 
 template <Scalar S>
 void Space<S>::setWorkers(TaskRunner* runner, Sharing sharing) {

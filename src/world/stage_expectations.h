@@ -50,7 +50,7 @@ class StageExpectations {
     }
   }
 
-  /// What is to be solved touches, in points whose normal is one, and moves something.
+  /// Expects of contacts to be solved that they touch, in points whose normal is one, and move something.
   static void expectContacts(const StepContext<S>& step) {
     const S slack = ratio<S>(1, 64);
     for (const Pair<S>& pair : step.state.pairs) {

@@ -88,8 +88,8 @@ bool Step<S>::run(StepContext<S>& step) {
   step.events.begin(step.state);
   step.derived.completePairs(step.state);
   ListContacts<S>::begin(step);
-  // What position functions ask about is the world before any of them moved a body; the soft step begins with
-  // it: nothing but what was moved by hand has to be placed.
+  // Position functions ask about the world before any of them moved a body; the soft step begins with it:
+  // nothing but what was moved by hand has to be placed.
   if (step.isSoft() || !step.wiring.positionFuncs.empty()) step.derived.refresh(step.state);
   const KeepPlaced keep(step.derived);
   const bool made = runLines(step);

@@ -55,7 +55,7 @@ struct Step {
   [[nodiscard]] bool runLines(StepContext<S>& step);
   static void takeBack(StepContext<S>& step);
 
-  SlotMap<Body<S>, BodyId> bodiesBefore_;  // Of a step that may be refused after bodies moved.
+  SlotMap<Body<S>, BodyId> bodiesBefore_;  // The bodies before a step that may be refused after they moved.
 };
 
 #define SAMESTEP_EACH_SCALAR extern template struct Step<S>;

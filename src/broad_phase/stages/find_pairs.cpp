@@ -9,11 +9,11 @@ namespace samestep {
 
 namespace {
 
-/// Of a pair, by which pairs are sorted.
+/// Key by which pairs are sorted.
 std::uint64_t sortKey(std::uint32_t a, std::uint32_t b) { return std::uint64_t{a} << 32 | b; }
 
-/// As intersects with a box grown by a margin, without a branch: for boxes that are near each other, whether
-/// they overlap is as good as random.
+/// Tells whether boxes grown by a margin intersect, without a branch: for boxes that are near each other,
+/// whether they overlap is as good as random.
 template <Scalar S>
 [[gnu::always_inline]] inline bool nearBoxes(const BB<S>& a, S margin, const BB<S>& b) {
   const BB<S> grown = inflate(a, margin);
@@ -37,7 +37,7 @@ bool FindPairs<S>::findCandidates(StepContext<S>& step) {
   }
   const std::uint64_t most = kCandidatesPerPair * step.wiring.maxPairs;
   if (tree.updatePairs(most, &step.wiring.budget)) return true;
-  // How much room boxes have to move follows from the past; whether a step is refused must not.
+  // The room boxes have to move follows from the past; whether a step is refused must not.
   for (std::uint32_t i = 0; i < step.state.shapes.slots(); ++i) {
     if (tree.contains(i)) tree.update(i, derived.placed[i].box);
   }
@@ -150,7 +150,7 @@ void FindPairs<S>::movePairs(WorldState<S>& state, std::uint32_t count) {
     pair.b = state.shapes.idAt(fresh.b);
   }
   pairs.resize(count);
-  // As when a world is built.
+  // So many new pairs come when a world is built, and seldom again.
   if (newPairs_.size() > 4096 && newPairs_.size() == count) newPairs_ = {};
 }
 

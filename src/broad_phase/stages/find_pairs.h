@@ -17,16 +17,16 @@ class FindPairs {
  public:
   /// Refuses the step where there would be too many: pairs are as before then.
   void run(StepContext<S>& step);
-  /// Of each pair, after run: whether its boxes overlap.
+  /// Overlap of the boxes of each pair, after run.
   const std::vector<std::uint8_t>& overlapping() const { return overlapping_; }
-  /// Whether so many shapes can be more pairs than are allowed.
+  /// True if so many shapes can be more pairs than are allowed.
   static bool mayFindTooMany(const StepContext<S>& step) {
     const std::uint64_t shapes = step.state.shapes.size();
     return shapes * shapes / 2 > step.wiring.maxPairs;
   }
 
  private:
-  // How many times as many shapes may have boxes near each other as there may be pairs.
+  // The shapes that have boxes near each other may be so many times as many as the pairs.
   static constexpr std::uint64_t kCandidatesPerPair = 8;
 
   struct NewPair {

@@ -38,7 +38,7 @@ template <Scalar S>
 const CollisionHandler<S>* ContactCallbacks<S>::handlerFor(const Context& context, Arbiter<S>& arbiter) {
   using Kind = HandlerBinding::Kind;
   constexpr CollisionType kAny = kWildcardCollisionType;
-  // For two types in this order, or in the other.
+  // A handler is looked for under two types in this order, or in the other.
   const auto findPair = [&](CollisionType first, CollisionType second, bool turned) {
     const auto* handler = boundHandler(context, Kind::pair, first, second);
     if (handler == nullptr) {
@@ -141,7 +141,8 @@ bool ContactCallbacks<S>::ask(Context& context, Pair<S>& pair) {
 template <Scalar S>
 void ContactCallbacks<S>::separate(Context& context, Pair<S>& pair, bool removal) {
   if (context.state.handlers.empty()) return;
-  // What callbacks set for the last step in which they touched is over; a saved world does not have it.
+  // Callbacks set values for the last step in which shapes touch, and that is over; a saved world does not
+  // have them.
   if (!removal) Derived<S>::takeShapesSurfaces(context.state, pair);
   Arbiter<S> arbiter = arbiterOf(context, pair);
   arbiter.removal_ = removal;
@@ -190,7 +191,7 @@ void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape
     ListContacts<S>::endBetween(context, pair);
     separate(context, pair, true);
   }
-  // Those between two that go move down together, each once.
+  // Pairs between two shapes that go move down together, each once.
   auto to = pairs.end(), from = pairs.begin();
   for (const std::uint32_t index : ofBody) {
     const auto gone = pairs.begin() + static_cast<std::ptrdiff_t>(index);

@@ -7,7 +7,7 @@
 
 namespace samestep {
 
-/// Who is told of collisions: handlers of a pair of types, else the wildcards of both.
+/// Callbacks of collisions: handlers of a pair of types, else the wildcards of both.
 template <Scalar S>
 struct ContactCallbacks {
   using Context = StepContext<S>;
@@ -16,9 +16,9 @@ struct ContactCallbacks {
     return pair.count > 0 && pair.age == 0 &&
            (pair.state == ArbiterState::firstCollision || pair.state == ArbiterState::normal);
   }
-  /// Whether anybody is asked if the pair shall be solved.
+  /// True if anybody is asked whether the pair shall be solved.
   static bool mayBeRefused(Context& context, Pair<S>& pair);
-  /// Whether begin has been called for a pair, or would have been, and separate has not.
+  /// True if begin has been called for a pair, or would have been, and separate has not.
   static bool hasBegun(const Pair<S>& pair) {
     return pair.state != ArbiterState::apart && pair.state != ArbiterState::cached;
   }
@@ -33,7 +33,7 @@ struct ContactCallbacks {
   /// want to add or remove has to wait. MIS: arbiterUnthread
   static void dropPairs(Context& context, BodyId body, ShapeId shape);
 
-  // What the wildcard handler of the arbiter's A says; with `ofB` that of its B, which sees its own shape as
+  // This calls the wildcard handler of the arbiter's A; with `ofB` that of its B, which sees its own shape as
   // A.
   static bool wildcardBegin(Context& context, Arbiter<S>& arbiter, bool ofB);
   static bool wildcardPreSolve(Context& context, Arbiter<S>& arbiter, bool ofB);

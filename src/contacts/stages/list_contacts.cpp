@@ -10,7 +10,7 @@
 namespace samestep {
 namespace {
 
-/// Of the shapes of a pair, by which pairs are sorted.
+/// Key of the shapes of a pair, by which pairs are sorted.
 std::uint64_t sortKey(ShapeId a, ShapeId b) { return std::uint64_t{a.index} << 32 | b.index; }
 
 template <Scalar S>
@@ -72,7 +72,7 @@ void ListContacts<S>::endBetween(Context& context, const Pair<S>& pair) {
   context.events.contacts.endsBetween.push_back(event);
 }
 
-/// What touches now and did not as the step began, and the other way round. Both lists rise by ids.
+/// Lists the contacts that began in the step and those that ended. Both lists rise by ids.
 template <Scalar S>
 void ListContacts<S>::listChanges(Context& context) {
   ContactLists<S>& lists = context.events.contacts;

@@ -105,7 +105,7 @@ void MendSeams<S>::judge(const StepContext<S>& step, const std::vector<std::uint
   }
 }
 
-/// Where both shapes say that a contact changes, it is the one with which they overlap less.
+/// Takes, where both shapes say that a contact changes, the change with which they overlap less.
 template <Scalar S>
 void MendSeams<S>::apply(StepContext<S>& step, std::vector<std::uint8_t>& found) {
   const auto before = [](const Change& x, const Change& y) {
@@ -133,7 +133,7 @@ void MendSeams<S>::apply(StepContext<S>& step, std::vector<std::uint8_t>& found)
 template <Scalar S>
 void MendSeams<S>::applyOne(StepContext<S>& step, std::uint8_t& found, const Change& change) const {
   Pair<S>& pair = step.state.pairs[change.pair];
-  // To be judged again.
+  // An unknown manifold is judged again.
   pair.manifold = Manifold::unknown;
   if (change.verdict == SeamVerdict::goes) {
     found = 0;

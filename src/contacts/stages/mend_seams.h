@@ -11,11 +11,11 @@
 
 namespace samestep {
 
-/// What was found of a pair in a step, as bits.
+/// Findings about a pair in a step, as bits.
 struct ContactFound {
   static constexpr std::uint8_t kLeft = 1;   ///< It touched before and does not now.
   static constexpr std::uint8_t kNear = 2;   ///< It has a contact.
-  static constexpr std::uint8_t kFresh = 4;  ///< Which is not that of the last step.
+  static constexpr std::uint8_t kFresh = 4;  ///< The manifold is not that of the last step.
   static constexpr std::uint8_t kSeam = 8;   ///< Between what moves and what contacts do not move.
 };
 
@@ -34,19 +34,19 @@ class MendSeams {
   /// A pair as one of its shapes sees it.
   struct Side {
     std::uint32_t shape;
-    std::uint32_t group;  ///< Of the other shape: its body, or kAlike.
+    std::uint32_t group;  ///< Group of the other shape: its body, or kAlike.
     std::uint32_t pair;
-    Vector<S> velocity{};  ///< Of those of kAlike, m/s.
+    Vector<S> velocity{};  ///< Velocity of those of kAlike, m/s.
 
     bool isWith(const Side& other) const {
       return shape == other.shape && group == other.group && velocity == other.velocity;
     }
     bool operator<(const Side& other) const;
   };
-  /// Where a contact does not stay.
+  /// Change of a contact that does not stay.
   struct Change {
     std::uint32_t pair;
-    bool byA;  ///< Whether A is the shape that sees the others.
+    bool byA;  ///< True if A is the shape that sees the others.
     SeamVerdict verdict;
     CollisionInfo<S> info;
   };
@@ -61,7 +61,7 @@ class MendSeams {
   void applyOne(StepContext<S>& step, std::uint8_t& found, const Change& change) const;
 
   std::vector<std::uint32_t> asked_;
-  // By shape and group; the contacts of one of both; and what changes.
+  // These are sorted by shape and group: the sides, the contacts of one of both, and what changes.
   std::vector<Side> sides_;
   SeamContacts<S> contacts_;
   std::vector<Change> changes_;

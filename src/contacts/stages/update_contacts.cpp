@@ -15,7 +15,7 @@ namespace samestep {
 
 namespace {
 
-/// Whether pairs are decided when all have been collided: where handlers are asked, and where what touches is
+/// True if pairs are decided when all have been collided: where handlers are asked, and where what touches is
 /// known before the solver tells.
 template <Scalar S>
 bool decidesLater(const StepContext<S>& step) {
@@ -46,7 +46,7 @@ void UpdateContacts<S>::collidePairs(StepContext<S>& step, const std::uint8_t* o
   mendSeams_.run(step, found_);
   step.pay(0);
   decidePairs(step, decidesLater(step));
-  // What callbacks have set is for this step.
+  // Callbacks set values for this step only.
   step.derived.surfacesKnown = !handled;
 }
 
@@ -81,8 +81,8 @@ void UpdateContacts<S>::collideTogether(StepContext<S>& step, const std::uint8_t
   step.events.collisionStats.highEpaIterations += epa;
 }
 
-/// Those of a range; this writes to nothing but these pairs. In the soft step without handlers it decides
-/// about them, too, but for those that may lie at a seam.
+/// Collides the pairs of a range; this writes to nothing but these pairs. In the soft step without handlers
+/// it decides about them, too, but for those that may lie at a seam.
 /// @return whether any of them touched before and does not now
 template <Scalar S>
 bool UpdateContacts<S>::collideRange(StepContext<S>& step, const std::uint8_t* overlapping,
@@ -135,7 +135,7 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
   RelativePose pose;
   bool same = false;
   if (recycles) {
-    // Seen from the larger shape, for a small turn of its body moves its ends far.
+    // The pose is that of the larger shape, for a small turn of its body moves its ends far.
     const bool byA = shapeA.reach >= shapeB.reach;
     pose = byA ? relativePose(bodyA.frame, bodyB.frame) : relativePose(bodyB.frame, bodyA.frame);
     if (pair.manifold != Manifold::unknown && steady(pose, pair.pose, min(shapeA.reach, shapeB.reach))) {
@@ -148,8 +148,8 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
                                           pair.collisionId, &stats, sensor ? S(0) : step.pairMargin());
     pair.collisionId = info.id;
     pair.pose = pose;
-    // Where one point touches a rounded surface, that surface may roll: a point fixed to it would lag behind
-    // and drive it on.
+    // A rounded surface that one point touches may roll: a point fixed to it would lag behind and drive it
+    // on.
     const bool rolls = info.count == 1 && (shapeA.rounded || shapeB.rounded);
     pair.manifold = Manifold::unknown;
     if (recycles && !rolls) pair.manifold = info.count == 0 ? Manifold::apart : Manifold::touching;
@@ -161,7 +161,7 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
     takeSurfaces(pair, derived.surfaces[shapeA.surface], derived.surfaces[shapeB.surface], {});
   }
   const bool movesA = bodyA.type == BodyType::dynamicBody, movesB = bodyB.type == BodyType::dynamicBody;
-  // What held something in the last step need not be asked.
+  // A contact that held something in the last step need not be asked.
   const bool holds = pair.contacts[0].normalSpeed + pair.contacts[1].normalSpeed != S(0);
   Meeting meeting = Meeting::notAsked;
   if (soft && !holds && (movesA || movesB)) {
@@ -180,7 +180,7 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
                                    (seam ? ContactFound::kSeam : 0));
 }
 
-/// Whether a contact is one in this step, and of shapes that touch now: see meets.
+/// Tells whether a contact is one in this step, and of shapes that touch now: see meets.
 template <Scalar S>
 typename UpdateContacts<S>::Meeting UpdateContacts<S>::meetsInStep(const StepContext<S>& step,
                                                                    Pair<S>& pair) {
@@ -210,7 +210,7 @@ template <Scalar S>
 void UpdateContacts<S>::decidePairs(StepContext<S>& step, bool all) {
   const auto decideOne = [&](std::uint32_t i) {
     Pair<S>& pair = step.state.pairs[i];
-    // Of those at seams some have no contact any more.
+    // Some contacts at seams are gone.
     if ((found_[i] & ContactFound::kNear) != 0) decide(step, pair);
     if (!hasLeft(pair)) return;
     found_[i] |= ContactFound::kLeft;
@@ -226,8 +226,8 @@ void UpdateContacts<S>::decidePairs(StepContext<S>& step, bool all) {
   }
 }
 
-/// Whether a pair touched before and does not now. Of what is solved before it touches, the solver tells
-/// whether it did.
+/// Tells whether a pair touched before and does not now. Of what is solved before it touches, the solver
+/// tells whether it did.
 template <Scalar S>
 bool UpdateContacts<S>::hasLeft(const Pair<S>& pair) {
   return pair.solved == 0 && pair.age != 0 && pair.state != ArbiterState::apart;
@@ -250,7 +250,7 @@ void UpdateContacts<S>::decide(StepContext<S>& step, Pair<S>& pair) {
     const bool asked =
         pair.state == ArbiterState::ignored || (handled && ContactCallbacks<S>::mayBeRefused(step, pair));
     if (solvable && !asked) pair.solved = 1;
-    // Where nobody looks before the solver is through, it tells.
+    // The solver tells, where nobody looks before it is through.
     if (pair.solved != 0 && !handled) return;
     if (!overlaps(pair, bodyA.frame, bodyB.frame)) return;
   }
@@ -265,7 +265,7 @@ void UpdateContacts<S>::touch(StepContext<S>& step, Pair<S>& pair, bool solvable
   if (wanted && solvable) {
     pair.solved = 1;
   } else {
-    // What is not solved must not come back as an old impulse.
+    // A pair that is not solved must not come back as an old impulse.
     pair.solved = 0;
     for (Contact<S>& contact : pair.contacts) {
       contact.normalSpeed = contact.tangentSpeed = contact.normalTotal = contact.tangentTotal = S(0);
@@ -311,8 +311,8 @@ bool UpdateContacts<S>::applyCollision(StepContext<S>& step, Pair<S>& pair) {
   return ContactCallbacks<S>::ask(step, pair);
 }
 
-/// Whether two static shapes that touched while one of them moved still do. Nothing looks for such pairs:
-/// they are kept, as they are, for when one moves again.
+/// Tells whether two static shapes that touched while one of them moved still do. Nothing looks for such
+/// pairs: they are kept, as they are, for when one moves again.
 template <Scalar S>
 bool UpdateContacts<S>::staysInTouch(const StepContext<S>& step, const Pair<S>& pair) {
   if (pair.state == ArbiterState::cached) return false;

@@ -25,11 +25,11 @@ class UpdateContacts {
   static void settle(StepContext<S>& step);
 
  private:
-  // How many pairs are shared out between two questions whether the step shall go on.
+  // So many pairs are shared out between two questions whether the step shall go on.
   static constexpr std::uint32_t kPairsTogether = 4 * Budget::kPairsAtOnce;
 
-  /// Whether what is solved is decided with the collision, whether pairs have what surfaces say from the last
-  /// step, and whether bodies of several shapes move.
+  /// Decisions for the whole step: whether what is solved is decided with the collision, whether pairs have
+  /// what surfaces say from the last step, and whether bodies of several shapes move.
   struct Deciding {
     bool now, surfacesKnown, compounds;
   };
@@ -57,7 +57,7 @@ class UpdateContacts {
   static bool staysInTouch(const StepContext<S>& step, const Pair<S>& pair);
   static void dropApart(StepContext<S>& step, const std::uint8_t* overlapping, std::size_t first);
 
-  // Of each pair what was found: bits of ContactFound.
+  // Each pair has an entry of what was found: bits of ContactFound.
   std::vector<std::uint8_t> found_;
   MendSeams<S> mendSeams_;
   bool someLeft_ = false;

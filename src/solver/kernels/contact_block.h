@@ -8,15 +8,15 @@
 /// share no inline function with the rest of the library.
 namespace samestep {
 
-/// What the numbers of a block are: a scalar as it is.
+/// Numbers of a block that are a scalar as it is.
 template <class S, bool kSpins>
 struct PlainNumbers {
   /// Pairs side by side in a block: as many as the widest kernel takes at once.
   static constexpr int kLanes = std::floating_point<S> ? 8 : 4;
   using Coefficient = S;  ///< Directions, arms, masses.
-  using Speed = S;        ///< Of a body.
+  using Speed = S;        ///< Number type of a body's speed.
   using Sum = S;          ///< Impulses and what is found from speeds.
-  /// Whether the spin per impulse is kept, where products are dear.
+  /// True if the spin per impulse is kept, where products are dear.
   static constexpr bool kStoresSpins = kSpins;
 };
 
@@ -36,7 +36,7 @@ struct WideNumbers : IntegerUnits {
   using Speed = std::int64_t;
   using Sum = std::int64_t;
   static constexpr int kFrictionBits = 22;
-  /// What speeds are held at, by the radius where they turn: 2^26 m/s; and limits of friction, 2^20 m/s.
+  /// Limits of speeds, by the radius where they turn: 2^26 m/s; and of friction, 2^20 m/s.
   static constexpr std::int64_t kMostSpeed = std::int64_t{1} << 58, kMostLimit = std::int64_t{1} << 52;
 };
 
@@ -47,8 +47,8 @@ struct FastNumbers : IntegerUnits {
   using Speed = std::int32_t;
   using Sum = std::int32_t;
   static constexpr int kFrictionBits = 28;
-  /// What speeds and impulses must stay below in size, half of it what ways must, a quarter what changes of
-  /// impulses must: then no sum leaves 32 bits.
+  /// Bound of speeds and impulses in size; ways must stay below half of it, changes of impulses below a
+  /// quarter: then no sum leaves 32 bits.
   static constexpr std::int32_t kRange = 1 << 28;
 };
 
@@ -62,7 +62,7 @@ struct alignas(4 * sizeof(typename N::Speed)) SoftBody {
   typename N::Speed moved[4];
 };
 
-/// What else a substep needs of a body.
+/// Further numbers of a body that a substep needs.
 template <class N>
 struct alignas(4 * sizeof(typename N::Speed)) SoftDrive {
   /// Added to the velocity by each substep; the last is 0.
@@ -70,16 +70,16 @@ struct alignas(4 * sizeof(typename N::Speed)) SoftDrive {
   /// The velocity of the substep before contacts: what it is less by holds the impulses of the contacts.
   /// The last is 0.
   typename N::Speed base[4];
-  /// What the velocity before contacts is held at; the last is what damping leaves of a velocity in a
-  /// substep, no less than 0.
+  /// Limits of the velocity before contacts; the last is what damping leaves of a velocity in a substep, no
+  /// less than 0.
   typename N::Speed limit[4];
 };
 
-/// What is marked of a body.
+/// Marks of a body.
 struct SoftMarks {
   /// A bit for each of x, y and angular whose velocity had to be held at its limit.
   std::uint8_t held;
-  /// Of integers: how far the square of a turning is shifted to be a bend, which depends on the radius.
+  /// Bits by which the square of a turning of integers is shifted to be a bend, which depends on the radius.
   std::uint8_t bendBits;
 };
 
@@ -105,12 +105,12 @@ struct BlockPoint {
   BlockAxis<N> normal, tangent;
   /// Between the surfaces along the normal when the step began, m.
   alignas(64) typename N::Speed separation[N::kLanes];
-  /// How fast the surfaces may still come nearer, or, if not above 0, the speed at which a spring holds them
-  /// to overlap less: by where the bodies were when they moved last, m/s.
+  /// Speed at which the surfaces may still come nearer, or, if not above 0, at which a spring holds them to
+  /// overlap less: by where the bodies were when they moved last, m/s.
   typename N::Speed target[N::kLanes];
 };
 
-/// How an impulse turns the bodies, 1/m^2: spin = moment * arm * u.
+/// Response of the bodies' spins to an impulse, 1/m^2: spin = moment * arm * u.
 template <class N, bool = N::kStoresSpins>
 struct BlockMoments {
   typename N::Coefficient momentA[N::kLanes], momentB[N::kLanes];
@@ -118,18 +118,18 @@ struct BlockMoments {
 template <class N>
 struct BlockMoments<N, true> {};
 
-/// What the points of a block are prepared from.
+/// Input from which the points of a block are prepared.
 template <class N>
 struct alignas(64) BlockInput {
   using Coefficient = typename N::Coefficient;
-  /// Of each body.
+  /// Rotation of each body.
   Coefficient cosA[N::kLanes], sinA[N::kLanes], cosB[N::kLanes], sinB[N::kLanes];
   /// In A's coordinates.
   Coefficient normalX[N::kLanes], normalY[N::kLanes];
   /// The spin that an impulse u of 1 gives each body at an arm of 1.
   Coefficient momentA[N::kLanes], momentB[N::kLanes];
   struct Point {
-    /// From the centres of mass, in the coordinates of each body.
+    /// Lever arms from the centres of mass, in the coordinates of each body.
     Coefficient armAX[N::kLanes], armAY[N::kLanes], armBX[N::kLanes], armBY[N::kLanes];
     /// 1, or all bits of an integer; 0 where the pair has no such point.
     Coefficient present[N::kLanes];
@@ -146,15 +146,15 @@ struct alignas(64) ContactBlock {
   /// does not move it; whether the contact is one with a body that nothing moves; whether springs do
   /// not push it apart; and whether velocities of pushing do, see BlockSolver::run.
   std::uint16_t fixedA, fixedB, roundA, roundB, stiff, stays, pushed;
-  /// Whether any point bounces; whether any strikes: approaches fast and holds nothing yet.
+  /// Marks: any point bounces; any strikes, that is approaches fast and holds nothing yet.
   std::uint8_t bounces, strikes;
-  /// Of 32 bits: the friction is 2^this times what is written, where that does not hold it.
+  /// Shift of the friction in 32 bits: it is 2^this times what is written, where that does not hold it.
   std::uint8_t frictionShift;
   alignas(64) typename N::Coefficient normalX[N::kLanes];
   typename N::Coefficient normalY[N::kLanes];
   /// The part of u that changes the speed of A; the rest that of B.
   typename N::Coefficient shareA[N::kLanes];
-  /// That part along the normal.
+  /// Part of the push along the normal.
   typename N::Coefficient pushAX[N::kLanes], pushAY[N::kLanes];
   // Takes no room where spins are kept: what follows stays aligned.
   [[no_unique_address]] BlockMoments<N> moments;
@@ -164,16 +164,16 @@ struct alignas(64) ContactBlock {
   BlockPoint<N> point[2];
 };
 
-/// What a block needs once in a while.
+/// Cold data of a block: what it needs once in a while.
 template <class N>
 struct alignas(64) BlockRest {
   /// The sums added up over the substeps.
   typename N::Sum normalTotal[2][N::kLanes], tangentTotal[2][N::kLanes];
   /// Accumulated u of the pushing apart, m/s: of pairs that are pushed.
   typename N::Sum pushSum[2][N::kLanes];
-  /// What a bounce shall leave, m/s; 0 for none.
+  /// Speed that a bounce shall leave, m/s; 0 for none.
   typename N::Sum bounce[2][N::kLanes];
-  /// Which pair of the Space each lane is; kNoPair for an empty one.
+  /// Pair of the Space in each lane; kNoPair for an empty one.
   std::uint32_t pair[N::kLanes];
   static constexpr std::uint32_t kNoPair = 0xffffffffu;
 };
@@ -182,16 +182,16 @@ struct alignas(64) BlockRest {
 template <class T>
 struct Softness {
   T biasRate;      ///< Part of an overlap that goes, 1/s.
-  T massScale;     ///< How hard the speed is corrected, in [0, 1].
-  T impulseScale;  ///< How much of the accumulated impulse is given back, in [0, 1].
+  T massScale;     ///< Fraction of the speed that is corrected, in [0, 1].
+  T impulseScale;  ///< Fraction of the accumulated impulse that is given back, in [0, 1].
 };
 
-/// Of a substep.
+/// Constants of a substep.
 template <class N>
 struct SoftConstants {
   /// Between bodies that move, and against one that does not.
   Softness<typename N::Coefficient> softness[2];
-  /// Of seconds, the inverse.
+  /// Inverse of a substep's seconds.
   typename N::Coefficient perSubstep;
   /// The greatest speed of pushing apart, m/s.
   typename N::Speed pushSpeed;
@@ -222,13 +222,13 @@ template <class N>
 using BodyPass = std::uint64_t (*)(SoftBody<N>* bodies, SoftDrive<N>* drives, SoftMarks* marks,
                                    std::uint32_t count, const SoftConstants<N>& constants);
 
-/// What a kernel does.
+/// Passes over the contacts that a kernel has.
 template <class N>
 struct SoftPasses {
   ContactPreparation<N> prepare;
-  /// With springs, before any body moves; and after one did and contacts relaxed.
+  /// Solves with springs, before any body moves; and after one did and contacts relaxed.
   ContactPass<N> start, solve;
-  /// Without; adds the substep's sums to the totals.
+  /// Solves without springs; adds the substep's sums to the totals.
   ContactPass<N> relax;
   /// Pushes pairs apart: the bodies' velocities are those of pushing.
   ContactPass<N> push;

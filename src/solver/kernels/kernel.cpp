@@ -8,7 +8,7 @@
 namespace samestep {
 namespace {
 
-/// What was built and what the processor has: that of the fast kernels stands for both.
+/// Kernels that were built and that the processor can run: that of the fast kernels stands for both.
 struct Available {
   KernelTarget targets[5] = {KernelTarget::portable};
   std::uint32_t count = 1;

@@ -16,15 +16,16 @@ namespace samestep {
 /// The radius, in powers of two metres, of what may be of any size since it does not move.
 inline constexpr int kAnyRadiusBits = 24;
 
-/// What is farther apart than two to the power of it, in metres, or overlaps more, counts as that far.
+/// Bound of separations, as a power of two in metres: what is farther apart, or overlaps more, counts as that
+/// far.
 inline constexpr int kMostNearBits = 11;
 
-/// What the soft step is told of a body that touches something.
+/// Input of the soft step for a body that touches something.
 template <Scalar S>
 struct SoftStart {
   S velocity[3]{};  ///< x, y, angular: m/s, rad/s.
-  S push[3]{};      ///< What a substep adds to it.
-  S kept = S(1);    ///< What damping leaves of it in one substep.
+  S push[3]{};      ///< Velocity that a substep adds.
+  S kept = S(1);    ///< Fraction of it that damping leaves in one substep.
   /// Inverse moment times mass, 1/m^2; and the mass, kg, 0 of what contacts leave as it is.
   S momentPerMass{};
   S mass{};
@@ -32,7 +33,7 @@ struct SoftStart {
   int radiusBits = 0;
 };
 
-/// What the pairs of a body are prepared from: all of it in one cache line.
+/// Frame of a body from which its pairs are prepared: all of it in one cache line.
 template <Scalar S>
 struct alignas(64) SoftFrame {
   /// The centre of mass in the world and in the body's coordinates, m.
@@ -40,32 +41,32 @@ struct alignas(64) SoftFrame {
   Vector<S> rotation{S(1), S(0)};
   /// kg; 0 of what contacts leave as it is.
   S mass{};
-  /// Which start is its own.
+  /// Number of its own start.
   std::uint32_t start = 0;
   std::int32_t radiusBits = 0;
 
   bool isFixed() const { return mass == S(0); }
-  /// From the centre of mass, in the body's coordinates.
+  /// Lever arm from the centre of mass, in the body's coordinates.
   Vector<S> arm(const Vector<S>& anchor) const { return anchor - centerOfMass; }
 };
 
-/// How two bodies share an impulse u.
+/// Mass ratios: how two bodies share an impulse u.
 template <class C>
 struct Shares {
   /// The part that changes the speed of A; what a speed of the lighter body is as u, in [1, 2].
   C a, perSpeed;
 };
 
-/// What the soft step made of it.
+/// Result of the soft step for a body.
 template <Scalar S>
 struct SoftMotion {
   S velocity[3]{};
   S moved[3]{};
-  /// Which velocities had to be held at their limits: bits of Body::Held.
+  /// Velocities that were clamped: bits of Body::Held.
   std::uint8_t held = 0;
 };
 
-/// What holds for a whole step.
+/// Settings for a whole step.
 template <Scalar S>
 struct SoftSettings {
   /// Between bodies that move, and against one that does not.
@@ -88,7 +89,7 @@ namespace units {
   return clamp(x, -limit, limit) << -bits;
 }
 
-/// The same for bits that are known and not less than 1.
+/// Rounds by a number of bits that is known and not less than 1.
 template <int kBits>
 [[gnu::always_inline]] inline std::int64_t rounded(std::int64_t x) {
   return (x + (std::int64_t{1} << (kBits - 1)) - (x < 0)) >> kBits;
@@ -119,17 +120,17 @@ inline Shares<std::int32_t> shares(std::uint64_t massA, std::uint64_t massB) {
           static_cast<std::int32_t>(((sum << kPerSpeedBits) + heavier / 2) / heavier)};
 }
 
-/// How many bits the whole part of a Q32.32 has, less than 0 for small ones.
+/// Bits of the whole part of a Q32.32, less than 0 for small ones.
 inline int wholeBits(std::uint64_t raw) { return static_cast<int>(std::bit_width(raw)) - 32; }
 
 }  // namespace units
 
-/// How the numbers of a scalar are written into the records of a kernel, and read from them. Where a number
-/// does not fit, `misfit` is no longer 0.
+/// Conversion of the numbers of a scalar into the records of a kernel, and back. Where a number does not fit,
+/// `misfit` is no longer 0.
 template <Scalar S, class N>
 class SoftUnits;
 
-/// As they are.
+/// Conversion to numbers as they are.
 template <Scalar S, bool kSpins>
 class SoftUnits<S, PlainNumbers<S, kSpins>> {
  public:
@@ -173,7 +174,7 @@ class SoftUnits<S, PlainNumbers<S, kSpins>> {
   static S fromSum(S x) { return x; }
 };
 
-/// As integers.
+/// Conversion to integers.
 template <Scalar S, std::derived_from<IntegerUnits> N>
 class SoftUnits<S, N> {
  public:
@@ -228,8 +229,8 @@ class SoftUnits<S, N> {
     } else {
       to.substep = narrow(units::shifted(of.substep.raw(), 32 - finer_ - N::kUnitBits));
       to.halfSubstep = narrow(units::shifted(of.substep.raw(), 33 - finer_ - N::kUnitBits));
-      // What is farther apart is not reached within a substep at any speed in range; what overlaps more is
-      // pushed apart as if it did not.
+      // A distance beyond these bounds is not reached within a substep at any speed in range; an overlap
+      // beyond them is pushed apart as if it were not.
       const std::int64_t perSubstep = max(std::int64_t{to.perSubstep}, std::int64_t{1});
       to.mostGap = narrow(min((std::int64_t{N::kRange} << N::kRateBits) / perSubstep, kMost));
       to.mostOverlap =
@@ -247,7 +248,7 @@ class SoftUnits<S, N> {
     if (perSpeed == 1 << (units::kPerSpeedBits + 1)) return kept + kept;
     return static_cast<Sum>(units::scaled<units::kPerSpeedBits>(perSpeed, kept));
   }
-  /// Of both bodies' shares.
+  /// Larger one of both bodies' shares.
   static std::int32_t larger(std::int32_t share) { return max(share, (1 << N::kUnitBits) - share); }
   /// An impulse u as the speed of the body of that share.
   [[gnu::always_inline]] S perMass(std::int32_t share, Sum sum) const {
@@ -257,11 +258,11 @@ class SoftUnits<S, N> {
       return S::fromRaw(units::shifted(std::int64_t{share} * sum, N::kUnitBits + speedBits_ - 32));
     }
   }
-  /// Of what is in [-1, 1].
+  /// Converts a number in [-1, 1].
   [[gnu::always_inline]] static std::int32_t unit(S x) {
     return narrow(units::rounded<32 - N::kUnitBits>(x.raw()));
   }
-  /// Of a speed, in [0, 1].
+  /// Converts a factor of a speed, in [0, 1].
   static Speed factor(S x) {
     if constexpr (kWide) return x.raw();
     return unit(x);
@@ -272,7 +273,7 @@ class SoftUnits<S, N> {
     if constexpr (kWide) return most;
     return static_cast<Speed>(min(most, kMost));
   }
-  /// What the bend of a kernel is told of the radius.
+  /// Bits by which the bend of a kernel is told of the radius.
   std::uint8_t bendBits(int radiusBits) const {
     if constexpr (kWide) return static_cast<std::uint8_t>(finer_ + radius(radiusBits));
     // Half the square. In units so coarse that less is meant, none is as large as the limit of bends.
@@ -319,12 +320,12 @@ class SoftUnits<S, N> {
   }
   [[gnu::always_inline]] S fromSum(Sum x) const { return S::fromRaw(units::shifted(x, speedBits_ - 32)); }
 
-  /// What turnings are kept by. In 64 bits it is not less than what ways are finer by, so that a bend is
-  /// never finer than its angle's square.
+  /// Bits by which turnings are kept. In 64 bits it is not less than what ways are finer by, so that a bend
+  /// is never finer than its angle's square.
   int radius(int bits) const { return clamp(bits, kWide ? -finer_ : -16, kAnyRadiusBits); }
 
  private:
-  /// What speeds, impulses and ways are held below.
+  /// Bits that bound speeds, impulses and ways.
   static constexpr int kSpeedBits = kWide ? 61 : 28;
   static constexpr std::int64_t kMost = (std::int64_t{1} << kSpeedBits) - 1;
   /// Room that speeds have for growing within the step: contacts push, and a difference is twice as large.

@@ -8,19 +8,19 @@
 namespace samestep {
 namespace {
 
-/// How fast a body may become while contacts answer each other, m/s and rad/s: far more than it may keep, and
-/// little enough for what is computed from it, at arms of up to 2^10.5 m. One contact changes a speed by no
-/// more than 2^21, a spin by no more than 2^30.
+/// Limits of a body's velocity while contacts answer each other, m/s and rad/s: far more than it may keep,
+/// and little enough for what is computed from it, at arms of up to 2^10.5 m. One contact changes a speed by
+/// no more than 2^21, a spin by no more than 2^30.
 template <Scalar S>
 inline constexpr S kMostSpeed = S(1 << 22);
 template <Scalar S>
 inline constexpr S kMostSpin = S(1 << 19);
-/// While kept impulses are given, which may turn a body to and fro and leave it at rest: so that one more
-/// fits.
+/// Limit while kept impulses are given, which may turn a body to and fro and leave it at rest: so that one
+/// more fits.
 template <Scalar S>
 inline constexpr S kMostGiven = S(1 << 29);
 
-/// Without branches, for it is asked of each contact in each pass.
+/// Tells without branches, for it is asked of each contact in each pass.
 template <Scalar S>
 bool allWithin(S x, S y, S z, S limit) {
   return (static_cast<int>(within(x, limit)) & static_cast<int>(within(y, limit)) &
@@ -84,7 +84,7 @@ void ImpulseSolver<S>::warmStart(ImpulseRow<S>& row, S dtCoefficient) {
 
 template <Scalar S>
 void ImpulseSolver<S>::iterate() {
-  // What was given, before anything is computed from it.
+  // The velocities are clamped before anything is computed from them.
   for (ImpulseBody<S>& body : bodies) hold(body);
   for (ImpulseRow<S>& row : rows) {
     ImpulseBody<S>& a = bodies[row.bodyA];

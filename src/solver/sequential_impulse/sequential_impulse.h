@@ -26,7 +26,7 @@ struct ImpulseRow : ContactAxes<S> {
   S bias{}, bounce{};
   /// Accumulated u for the bias velocities.
   S biasSum{};
-  /// What bodies were given at first less than the sums said, u.
+  /// Impulses that bodies were given at first less than the sums said, u.
   S normalLacks{}, tangentLacks{};
 };
 

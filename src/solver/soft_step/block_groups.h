@@ -20,7 +20,7 @@ struct BlockGroup {
 template <class N>
 inline constexpr std::uint32_t kBlockGrain = 96 / N::kLanes;
 
-/// The same of bodies in a loop of few operations each.
+/// Grain of bodies in a loop of few operations each.
 inline constexpr std::uint32_t kBodyGrain = 256;
 
 /// Something that any part of the work may find, whatever it is: no order matters.

@@ -45,7 +45,7 @@ SoftPasses<N> passesFor(KernelTarget target) {
   }
 }
 
-/// Whether there is a point, see BlockInput.
+/// Coefficient of a point that is there, see BlockInput.
 template <class N>
 inline constexpr typename N::Coefficient kPresent{1};
 template <std::derived_from<IntegerUnits> N>
@@ -74,7 +74,7 @@ constexpr int kCarriedTimes = 64;
 template <Scalar S>
 inline constexpr S kUnpushed = ratio<S>(1, 1 << 10);
 
-/// How often springs are solved once more where something strikes.
+/// Number of times springs are solved once more where something strikes.
 constexpr int kMorePasses = 2;
 
 /// The largest radius, in powers of two metres, at which a point along the normal is known to 2^-27 m by the
@@ -361,8 +361,8 @@ void BlockSolver<S, N>::setFriction(Block& block, int lane, S friction) {
   }
 }
 
-/// What contacts gave a velocity in the last substep is its difference from the base. Preparing has given
-/// what they kept to the velocities.
+/// Counts what contacts gave a velocity in the last substep as its difference from the base. Preparing has
+/// given what they kept to the velocities.
 template <Scalar S, class N>
 void BlockSolver<S, N>::tellKept(std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -443,7 +443,7 @@ SoftMotion<S> BlockSolver<S, N>::motion(std::uint32_t index) const {
   for (int k = 0; k < 3; ++k) {
     const int radius = k == 2 ? start.radiusBits : 0;
     if constexpr (kIntegers) {
-      // What is finer than the unit of this step stays.
+      // Velocities finer than the unit of this step stay.
       std::int64_t misfit = 0;
       const Speed from =
           k == 2 ? units_.turn(start.velocity[k], radius, misfit) : units_.speed(start.velocity[k], misfit);
@@ -548,7 +548,7 @@ void BlockSolver<S, N>::addBounce(std::uint32_t at, int lane, int index, const P
 template <Scalar S, class N>
 void BlockSolver<S, N>::takeBounce(const BouncePoint<S>& point, const Restitution<S>& restitution) {
   std::int64_t misfit = 0;
-  // What leaves holds nothing in the next step.
+  // A contact that leaves holds nothing in the next step.
   BlockPoint<N>& from = blocks_[point.block].point[point.index];
   from.normal.sum[point.lane] = from.tangent.sum[point.lane] = typename N::Sum(0);
   auto& total = rests_[point.block].normalTotal[point.index][point.lane];

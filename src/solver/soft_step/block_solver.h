@@ -51,10 +51,10 @@ class BlockSolver {
   /// Prepares the points of a block that has its pairs and gives their kept impulses to the bodies.
   /// @return false where a number does not fit
   bool closeBlock(std::uint32_t at, int pairs, S bounceThreshold, const Taken& taken);
-  /// Whether any point of the block may bounce; whether any strikes.
+  /// True if any point of the block may bounce; strikes, if any strikes.
   bool bounces(std::uint32_t at) const { return blocks_[at].bounces != 0; }
   bool strikes(std::uint32_t at) const { return blocks_[at].strikes != 0; }
-  /// Whether any pair of the block is pushed apart.
+  /// True if any pair of the block is pushed apart.
   bool pushes(std::uint32_t at) const { return blocks_[at].pushed != 0; }
   /// Makes all substeps.
   /// @param strikes  whether any point does: nothing kept from the last step says yet how the blow goes on
@@ -107,7 +107,7 @@ class BlockSolver {
   std::vector<SoftMarks> marks_;
   /// The velocities of pushing apart; what the bodies' own are while these are added to them.
   std::vector<SoftBody<N>> pushes_;
-  /// Of integers: inverse moment times mass by the squared radius, in units of spins.
+  /// Inverse moment times mass by the squared radius, of integers, in units of spins.
   std::vector<std::int32_t> moments_;
   BlockMemory* memory_;
   /// Both in the memory, blockCount_ of them.

@@ -49,7 +49,7 @@ class ContactGroups {
     order.resize(places_.size());
     for (std::uint32_t i = 0; i < places_.size(); ++i) order[next[places_[i]]++] = i;
   }
-  /// How many pairs a group has.
+  /// Number of pairs of a group.
   std::uint32_t size(std::uint32_t group) const { return sizes_[2 * group] + sizes_[2 * group + 1]; }
 
  private:

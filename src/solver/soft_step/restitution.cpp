@@ -6,7 +6,7 @@
 namespace samestep {
 namespace {
 
-/// What a velocity is changed by at the most, m/s and rad/s.
+/// Limit of a velocity's change, m/s and rad/s.
 template <Scalar S>
 inline constexpr S kMostChange = S(1 << 22);
 

@@ -15,7 +15,7 @@ struct BounceBody {
   S before[3]{};    ///< x, y, angular when the step began: m/s, rad/s.
   S velocity[3]{};  ///< After contacts that do not bounce.
   S moved[3]{};     ///< In the step: m, rad.
-  S pushed[3]{};    ///< By forces in a substep: m/s, rad/s.
+  S pushed[3]{};    ///< Velocity that forces give in a substep: m/s, rad/s.
   S perSecond{};    ///< Substeps.
   S mass{};         ///< kg; 0 of what contacts leave as it is.
   S momentPerMass{};
@@ -30,13 +30,13 @@ struct BouncePoint {
   /// r x n and r x t.
   S armA{}, armB{}, tangentArmA{}, tangentArmB{};
   S spinA{}, spinB{};
-  /// What the contact has given in the step, of that what it did not hold before, and the speed of the
-  /// surface along the tangent.
+  /// Impulses of the contact in the step, the part that it did not hold before, and the speed of the surface
+  /// along the tangent.
   S pressed{}, rubbed{}, taken{}, surface{};
   S elasticity{};
-  /// What was given back.
+  /// Impulse that was given back.
   S rebound{};
-  /// Where it is from.
+  /// Block and point it is from.
   std::uint32_t block = 0;
   std::uint8_t lane = 0, index = 0;
 };

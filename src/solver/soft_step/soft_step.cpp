@@ -9,7 +9,7 @@ template <Scalar S>
 Softness<S> makeSoftness(S hertz, S dampingRatio, S substep) {
   const S omega = S(2) * kPi<S> * hertz;
   const S a1 = S(2) * dampingRatio + substep * omega;
-  // Also where a spring is too weak for the scalar to tell from none.
+  // A spring may also be too weak for the scalar to tell from none.
   if (hertz == S(0) || a1 == S(0)) return {S(0), S(1), S(0)};
   const S a2 = substep * omega * a1;
   const S a3 = reciprocal(S(1) + a2);
@@ -26,8 +26,8 @@ void SoftStep<S>::clear() {
   groups.clear();
 }
 
-// Without damping the whole step at once: its substeps would only add rounding. What a substep changes of the
-// velocity a body has on its way through it by half.
+// The whole step is done at once without damping: its substeps would only add rounding. What a substep
+// changes of the velocity a body has on its way through it by half.
 template <Scalar S>
 void SoftStep<S>::addFree(const SoftStart<S>& start, const S (&pull)[3], S dt) {
   constexpr S kLimits[3] = {kMaxSpeed<S>, kMaxSpeed<S>, kMaxAngularSpeed<S>};

@@ -28,7 +28,7 @@ class SoftSolvers {
   SoftSolvers& operator=(const SoftSolvers&) = delete;
   /// Starts a step. @param fast  whether 32 bits may do
   void begin(bool fast) { chosen_ = fast ? 0 : 1; }
-  /// To the next one; the last takes everything.
+  /// Falls back to the next one; the last takes everything.
   void fallBack() { ++chosen_; }
   /// Calls the function with the one chosen.
   template <class Function>
@@ -81,15 +81,15 @@ struct SoftStep {
   SoftSettings<S> settings{};
   /// The bodies that touch something; the first stands for all that never move.
   std::vector<SoftStart<S>> starts;
-  /// Of every slot of a body; only those of bodies that touch something are of this step.
+  /// Frames of every slot of a body; only those of bodies that touch something are of this step.
   std::vector<SoftFrame<S>> frames;
-  /// Those that touch nothing, after the step.
+  /// Motions of the bodies that touch nothing, after the step.
   std::vector<SoftMotion<S>> free;
-  /// Of the blocks, in their order.
+  /// Groups of the blocks, in their order.
   std::vector<BlockGroup> groups;
   /// No kept impulse is larger, as a speed of the lighter body, m/s; asked for where 32 bits are to do.
   S mostKept{};
-  /// Whether any contact may bounce, whether any strikes, whether any is pushed apart: see BlockSolver.
+  /// Marks: any contact may bounce, any strikes, any is pushed apart: see BlockSolver.
   bool bounces = false, strikes = false, pushes = false;
   SoftSolvers<S> solvers;
   Restitution<S> restitution;

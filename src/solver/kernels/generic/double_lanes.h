@@ -45,7 +45,7 @@ struct ChosenDoubles : Types {
   }();
 };
 
-/// What is the same for every number of doubles side by side: element by element the arithmetic of double.
+/// Arithmetic that is the same for every number of doubles side by side: element by element that of double.
 template <class Vectors>
 struct DoubleLanes {
   using Numbers = PlainNumbers<double, false>;
@@ -55,7 +55,7 @@ struct DoubleLanes {
   using M = typename Vectors::Masks;
   static constexpr int kWidth = sizeof(V) / sizeof(double);
 
-  /// Of the whole block, whatever the width: a point that does nothing still turns -0 into 0.
+  /// Points of the whole block, whatever the width: a point that does nothing still turns -0 into 0.
   static int pointsOf(const ContactBlock<Numbers>& block, int) { return block.points; }
   [[gnu::always_inline]] static V zero() { return V{}; }
   [[gnu::always_inline]] static V whole() { return all(1.0); }

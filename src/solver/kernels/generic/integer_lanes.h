@@ -132,7 +132,7 @@ class WideLanes {
     return static_cast<std::int64_t>((rounded + (rounded >> 1 & 1)) >> 1 << bits);
   }
 
-  /// What is held keeps the rest in range, see docs/ranges.md.
+  /// Clamped values keep the rest in range, see docs/ranges.md.
   [[gnu::always_inline]] static V checked(V v) { return v; }
   [[gnu::always_inline]] static V checkedTurn(V v) { return v; }
   [[gnu::always_inline]] static V checkedSpeed(V v, int) {
@@ -182,7 +182,7 @@ class WideLanes {
     [[gnu::always_inline]] friend Products operator-(const Products& a, const Products& b) {
       return {a.high - b.high, a.low - b.low};
     }
-    /// By 2^bits.
+    /// Divides by 2^bits.
     template <int kBits>
     [[gnu::always_inline]] V over() const {
       return (high << (32 - kBits)) + Vectors::template rounded<kBits>(low);
@@ -379,8 +379,8 @@ class CoefficientLanes {
   [[gnu::always_inline]] static V arm(V v) {
     return Vectors::less(Vectors::greater(v, all(-kOne)), all(kOne));
   }
-  /// Those of less than 16 are promised to FastLanes; moments below 32, the most that 32 bits hold, do for
-  /// WideLanes.
+  /// Spin by an impulse: moments of less than 16 are promised to FastLanes; those below 32, the most that 32
+  /// bits hold, do for WideLanes.
   [[gnu::always_inline]] V spin(const C& moment, V arm) {
     const V spin = over<N::kUnitBits>(Vectors::times(moment, arm));
     left_ = left_ | (spin + (1 << 30));
@@ -436,8 +436,8 @@ class CoefficientLanes {
   V left_{};
 };
 
-/// What vectors of 64-bit integers have in common whose processor shifts unsigned ones only. `Types` names
-/// the vectors.
+/// Shifts that vectors of 64-bit integers have in common whose processor shifts unsigned ones only. `Types`
+/// names the vectors.
 template <class Types>
 struct UnsignedShifts : Types {
   using V = typename Types::V;

@@ -8,7 +8,7 @@
 namespace samestep {
 namespace {
 
-/// How many of a body's four numbers a kernel looks at: one at a time leaves out the last.
+/// Number of a body's four numbers that a kernel looks at: one at a time leaves out the last.
 template <class L>
 inline constexpr int kRowUsed = L::kWidth == 1 ? 3 : 4;
 
@@ -23,7 +23,7 @@ template <class L, class Speed>
   }
 }
 
-/// What contacts gave a velocity in the last substep is its difference from the base, and is given again.
+/// Gives the velocity what contacts gave in the last substep, its difference from the base, once more.
 template <class L, class N = typename L::Numbers>
 std::uint64_t driveBodies(SoftBody<N>* bodies, SoftDrive<N>* drives, SoftMarks* marks, std::uint32_t count,
                           const SoftConstants<N>&) {
@@ -48,7 +48,7 @@ std::uint64_t driveBodies(SoftBody<N>* bodies, SoftDrive<N>* drives, SoftMarks* 
   return lanes.left();
 }
 
-/// Whether contacts have changed the velocity of a body in this substep.
+/// True if contacts have changed the velocity of a body in this substep.
 template <class L, class N>
 [[gnu::always_inline]] inline bool isHeld(const SoftBody<N>& body, const SoftDrive<N>& drive) {
   bool held = false;
@@ -58,8 +58,8 @@ template <class L, class N>
   return held;
 }
 
-/// What nothing holds goes at the mean of its velocities before and after the substep, as under a constant
-/// force it does; what contacts hold goes where they make it go.
+/// Moves bodies that nothing holds at the mean of their velocities before and after the substep, as under a
+/// constant force they do; those that contacts hold go where these make them go.
 template <class L, class N = typename L::Numbers>
 std::uint64_t moveBodies(SoftBody<N>* bodies, SoftDrive<N>* drives, SoftMarks* marks, std::uint32_t count,
                          const SoftConstants<N>& constants) {

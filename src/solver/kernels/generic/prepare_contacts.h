@@ -3,7 +3,8 @@
 
 #include "solver/kernels/contact_block.h"
 
-/// What the passes over a contact block need of it, written once for every kernel, as solve_contacts.h is.
+/// Preparation of a contact block for the passes over it, written once for every kernel, as solve_contacts.h
+/// is.
 namespace samestep {
 namespace {
 

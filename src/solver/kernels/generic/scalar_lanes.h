@@ -72,7 +72,7 @@ struct ScalarLanes {
   [[gnu::always_inline]] static V product(const V& x, const V& y) { return {x.a * y.a, x.b * y.b}; }
   [[gnu::always_inline]] static V frictionLimit(const ContactBlock<Numbers>&, const V& friction,
                                                 const V& sum) {
-    // What was kept may be twice as large.
+    // Kept impulses may be twice as large.
     const V most = all(S(1 << 20));
     const V limit = product(friction, {min(sum.a, most.a), min(sum.b, most.b)});
     return {min(limit.a, most.a), min(limit.b, most.b)};
@@ -116,7 +116,7 @@ struct ScalarLanes {
     const S angle = clamp(turn, S(-1), S(1));
     return min(angle * angle * ratio<S>(1, 2), ratio<S>(1, 8));
   }
-  /// What is held keeps the rest in range, see docs/ranges.md.
+  /// Clamped values keep the rest in range, see docs/ranges.md.
   [[gnu::always_inline]] static V checked(const V& v) { return v; }
   [[gnu::always_inline]] static V checkedTurn(const V& v) {
     return within(v, all(-kMostSpin), all(kMostSpin));
@@ -175,7 +175,7 @@ struct ScalarLanes {
     }
     return spin * impulse;
   }
-  /// What speeds and spins are held at between two contacts, m/s and rad/s.
+  /// Limits of speeds and spins between two contacts, m/s and rad/s.
   static constexpr S kMostSpeed = S(1 << 22), kMostSpin = S(1 << 14);
 
  private:
@@ -243,7 +243,7 @@ struct WideScalarLanes {
   static V factor(std::int64_t x) { return all(x); }
   static V addProduct(V x, V factor, V to) { return factor == S(1) ? x + to : mulAdd(x, factor, to); }
   static bool differ(V x, V y) { return x != y; }
-  /// As that of ScalarLanes, of a turning by the radius.
+  /// Bend as that of ScalarLanes, of a turning by the radius.
   static std::int64_t bend(std::int64_t turn, int bits) {
     const S bend = ScalarLanes<S>::bend(all(units::shifted(turn, bits)), 0);
     return bend.raw() << bits;

@@ -15,7 +15,7 @@ struct LaneMotion {
   typename L::V x, y, turn;
 };
 
-/// Which pass over the contacts it is: with springs before any body moves, with springs, or without them.
+/// Pass over the contacts: with springs before any body moves, with springs, or without them.
 enum class Pass { start, solve, relax };
 
 /// One pair of each lane. With springs friction comes first, against the normal impulses so far, and the

@@ -61,7 +61,7 @@ struct FastSimd128 {
   using V [[gnu::vector_size(16), gnu::may_alias]] = std::int32_t;
   using Loose [[gnu::vector_size(16), gnu::may_alias, gnu::aligned(4)]] = std::int32_t;
   using Body = SoftBody<FastNumbers>;
-  /// As they are.
+  /// Coefficients as they are.
   struct Coefficients {
     V value;
 

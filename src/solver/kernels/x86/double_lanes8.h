@@ -20,11 +20,12 @@ struct EightDoubles {
   [[gnu::always_inline]] static Masks above(Numbers a, Numbers b) {
     return _mm512_cmp_pd_mask(own(a), own(b), _CMP_GT_OQ);
   }
-  /// Of two zeros, and where one is no number, the processor gives the second, as the comparison does.
+  /// Greater one of two; of two zeros, and where one is no number, the processor gives the second, as the
+  /// comparison does.
   [[gnu::always_inline]] static Numbers greater(Numbers a, Numbers b) {
     return numbers(_mm512_max_pd(own(b), own(a)));
   }
-  /// The same, for `low` is no more than `high`.
+  /// Clamps in one go, for `low` is no more than `high`.
   [[gnu::always_inline]] static Numbers within(Numbers x, Numbers low, Numbers high) {
     return numbers(_mm512_max_pd(own(low), _mm512_min_pd(own(high), own(x))));
   }

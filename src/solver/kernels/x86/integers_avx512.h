@@ -15,7 +15,7 @@ struct Avx512Vectors {
   using Loose [[gnu::vector_size(64), gnu::may_alias, gnu::aligned(8)]] = std::int64_t;
   using LooseHalf [[gnu::vector_size(64), gnu::may_alias, gnu::aligned(4)]] = std::int32_t;
 
-  /// Of the low halves.
+  /// Multiplies the low halves.
   [[gnu::always_inline]] static U multiply(U a, U b) {
     return reinterpret_cast<U>(_mm512_mul_epi32(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b)));
   }

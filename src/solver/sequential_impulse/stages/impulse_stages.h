@@ -27,7 +27,7 @@ class ImpulseStages {
   void storeVelocities(StepContext<S>& step);
 
   ImpulseSolver<S> solver_;
-  // Of each body slot, its number among the solver's bodies; and back.
+  // The first has a number among the solver's bodies for each body slot; the second leads back.
   std::vector<std::uint32_t> solverIndex_;
   std::vector<std::uint32_t> bodies_;
 };

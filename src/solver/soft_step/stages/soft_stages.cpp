@@ -23,7 +23,7 @@ int radiusBits(const Derived<S>& derived, std::uint32_t index, const Body<S>& bo
   return most == S(0) ? 0 : static_cast<int>(std::bit_width(raw::magnitude(most.raw()) - 1)) - 32;
 }
 
-/// How many pairs ahead pairs and bodies are fetched.
+/// Number of pairs ahead that pairs and bodies are fetched.
 constexpr std::uint32_t kAhead = 8;
 
 }  // namespace
@@ -252,7 +252,7 @@ void SoftStages<S>::solve(StepContext<S>& step) {
                 [&] { solved = solver.run(soft_.strikes, soft_.pushes, team, step.wiring.budget); });
     step.wiring.budget.endWhereAsked();
     if (!solved) return false;
-    // By itself, for it takes memory.
+    // Bounces are a stage by themselves, for they take memory.
     if (soft_.bounces)
       solver.bounce(step.state.pairs, step.state.settings.bounceThreshold, soft_.restitution);
     team.during(together, [&] { solver.store(step.state.pairs, team); });

@@ -23,7 +23,7 @@ class SoftStages {
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  // Of solverIndex_: a body that touches nothing, by its place among them.
+  // This bit of solverIndex_ marks a body that touches nothing, by its place among them.
   static constexpr std::uint32_t kFree = 0x80000000u;
 
   struct SolvedPair {
@@ -48,7 +48,7 @@ class SoftStages {
   std::vector<SolvedPair> solvedPairs_;
   // Numbers of solvedPairs_, group after group.
   std::vector<std::uint32_t> groupOrder_;
-  // Of each body slot.
+  // Each body slot has an entry.
   std::vector<std::uint32_t> solverIndex_;
 };
 
