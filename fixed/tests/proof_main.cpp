@@ -108,7 +108,7 @@ class Proof {
     ++tested_;
     const std::int64_t result = fixed(a, b);
     mpfr_mul_2ui(exact_.get(), exact_.get(), 32, MPFR_RNDN);
-    // What does not fit saturates.
+    // A number that does not fit saturates.
     if (mpfr_cmp_si(exact_.get(), kMost) > 0) {
       mpfr_set_si(exact_.get(), kMost, MPFR_RNDN);
     } else if (mpfr_cmp_si(exact_.get(), kLeast) < 0) {
@@ -181,7 +181,7 @@ void proveTables() {
 
 // Half a unit, and what the bits of the reference leave open.
 constexpr double kHalf = 0.5 + 1e-12;
-// For the functions that are not correctly rounded.
+// This is the bound of the functions that are not correctly rounded.
 constexpr double kUlp = 1.0;
 
 // The further operands of the sums of products are made from the first two.
@@ -370,7 +370,7 @@ void proveAngles(std::uint64_t points) {
   Proof("atan2", kUlp, points, true)
       .run(
           [](Random& random) -> Pair {
-            // As often near each other in size as not.
+            // The two are as often near each other in size as not.
             const Pair any = anyPair(random);
             return random.next() % 2 == 0 ? any : Pair{any[0], any[0] + (any[1] >> 4)};
           },

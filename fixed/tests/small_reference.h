@@ -14,7 +14,7 @@ constexpr std::int64_t roundedQuotientOf(std::int64_t n, std::int64_t d) {
   return floor + (twice > d || (twice == d && floor % 2 != 0) ? 1 : 0);
 }
 
-/// The same held in [least, most]; n / 0 is the end on n's side, and 0 / 0 is 0.
+/// Quotient held in [least, most]; n / 0 is the end on n's side, and 0 / 0 is 0.
 constexpr std::int64_t saturatedQuotientOf(std::int64_t n, std::int64_t d, std::int64_t least,
                                            std::int64_t most) {
   if (d == 0) return n == 0 ? 0 : n < 0 ? least : most;
@@ -22,12 +22,12 @@ constexpr std::int64_t saturatedQuotientOf(std::int64_t n, std::int64_t d, std::
   return quotient < least ? least : quotient > most ? most : quotient;
 }
 
-/// Whether root is the integer nearest to sqrt(square).
+/// True if root is the integer nearest to sqrt(square).
 constexpr bool isNearestRoot(std::int64_t root, std::int64_t square) {
   return root >= 0 && root * root - root < square + (root == 0 ? 1 : 0) && square <= root * root + root;
 }
 
-/// Whether unit is the integer nearest to scale x / sqrt(x^2 + y^2).
+/// True if unit is the integer nearest to scale x / sqrt(x^2 + y^2).
 constexpr bool isNearestComponent(std::int64_t unit, std::int64_t x, std::int64_t y, std::int64_t scale) {
   if ((unit < 0) != (x < 0) && unit != 0) return false;
   const std::int64_t size = unit < 0 ? -unit : unit;

@@ -2,7 +2,7 @@
 
 namespace samestep {
 
-/// What parseDecimal made of its text. Anything but `ok` leaves the output as it was.
+/// Result of parseDecimal. Anything but `ok` leaves the output as it was.
 enum class DecimalStatus : unsigned char {
   ok,
   empty,       ///< no characters at all

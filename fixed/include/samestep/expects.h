@@ -7,7 +7,7 @@
 
 namespace samestep {
 
-/// Whether expectations are checked: in builds with SAMESTEP_EXPECTS alone.
+/// True in builds with SAMESTEP_EXPECTS alone: expectations are checked.
 #ifdef SAMESTEP_EXPECTS
 inline constexpr bool kExpects = true;
 #else

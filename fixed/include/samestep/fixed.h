@@ -177,8 +177,8 @@ class BasicFixed {
     }
     return fromRaw(static_cast<Rep>(result.raw));
   }
-  /// What is left of a after taking away whole multiples of b, toward zero: exact, smaller in size than b,
-  /// with the sign of a; 0 for b = 0.
+  /// Remainder of a after taking away whole multiples of b, toward zero: exact, smaller in size than b, with
+  /// the sign of a; 0 for b = 0.
   friend constexpr BasicFixed remainder(BasicFixed a, BasicFixed b) {
     if constexpr (kChecks) {
       if (b.raw_ == 0) raw::report("remainder", kFractionBits, {a.raw_, b.raw_});
@@ -245,7 +245,7 @@ class BasicFixed {
 
 /// The number of the engine: Q32.32, range +-2^31, unit 2^-32.
 using Fixed = BasicFixed<std::int64_t, 32, Wrapping>;
-/// The same number with every overflow reported.
+/// Number with every overflow reported.
 using CheckedFixed = BasicFixed<std::int64_t, 32, Checked>;
 
 template <class T>

@@ -31,7 +31,7 @@ class OverflowText {
   std::uint32_t length_ = 0;
 };
 
-/// What a checked number met: an overflow, a lost quotient or an argument outside the domain.
+/// Report of a checked number: an overflow, a lost quotient or an argument outside the domain.
 struct OverflowReport {
   static constexpr int kMaxOperands = 8;
 
@@ -54,7 +54,7 @@ struct OverflowReport {
   }
 };
 
-/// Thrown by the default handler; what() names the operation and its operands.
+/// Exception of the default handler; what() names the operation and its operands.
 class FixedOverflow : public std::exception {
  public:
   explicit FixedOverflow(const OverflowReport& report) : report_(report), text_(report.text()) {}
@@ -67,7 +67,7 @@ class FixedOverflow : public std::exception {
   OverflowText text_;
 };
 
-/// Told of each report. If it returns, the operation gives what the wrapping number gives.
+/// Function that is told of each report. If it returns, the operation gives what the wrapping number gives.
 using OverflowHandler = void (*)(const OverflowReport&);
 
 /// Throws FixedOverflow; aborts where exceptions are off.

@@ -285,7 +285,7 @@ inline constexpr std::array<std::uint64_t, 11> kLogTerms = {
     0x3d8e13b87407fae9, 0x34c2ec54f5bdb27f, 0x2e2a8eca5705fc2f, 0x2909627af80551f1,
     0x24eed8a1df37fcf2, 0x2193509328045a51, 0x1ec709dc3a03fd75};
 
-/// The same series cut to 5 terms, for log2 alone, in units of 2^-32; error 1.2e-11.
+/// Series cut to 5 terms, for log2 alone, in units of 2^-32; error 1.2e-11.
 inline constexpr std::array<std::uint64_t, 5> kShortLogTerms = {0xb8aa3b29, 0x7b1c2760, 0x5c551d86,
                                                                 0x49e1d0b2, 0x3d91af3a};
 

@@ -31,7 +31,7 @@ constexpr DecimalStatus parseDecimal(std::string_view text, S& out) {
   return DecimalStatus::ok;
 }
 
-/// Called by a literal that is no number: not constexpr, so that the compiler stops there.
+/// A literal that is no number calls this: it is not constexpr, so that the compiler stops there.
 void aFixedLiteralMustBeADecimalNumberInTheRangeOfFixed();
 
 namespace literals {

@@ -16,7 +16,7 @@ requires(S::kBits == 32) struct LocalOf<S> {
   using type = std::int64_t;
 };
 
-/// How far apart places may be for localPlace, m.
+/// Distance that places may have for localPlace, m.
 inline constexpr int kLocalReach = 1 << 9;
 
 /// A difference of places, of magnitude below kLocalReach.

@@ -56,7 +56,7 @@ constexpr FromDouble fromDouble(double value, int bits, std::int64_t least, std:
 template <class Way, int kBits>
 using ProductSum = way::Sum<typename Way::Words, kBits>;
 
-/// The same sum without the modulus, to learn whether it fits.
+/// Sum without the modulus, to learn whether it fits.
 template <int kBits>
 class ExactSum {
  public:
@@ -72,7 +72,7 @@ class ExactSum {
   }
   constexpr void plus(std::int64_t c) { floors_ = floors_ + extended(c); }
 
-  /// Whether the rounded sum lies in [least, most].
+  /// True if the rounded sum lies in [least, most].
   constexpr bool fits(std::int64_t least, std::int64_t most) const {
     const Halves floor = floors_ + Halves{0, rests_ >> kBits};
     const std::uint64_t rest = rests_ & kMask;
@@ -109,7 +109,7 @@ struct Quotient {
 template <class Way>
 constexpr Quotient roundedQuotient(std::uint64_t high, std::uint64_t low, std::uint64_t divisor,
                                    bool negative, std::int64_t least, std::int64_t most) {
-  // Also where the divisor is 0. Guards the division from a quotient of more than 64 bits.
+  // This is also taken where the divisor is 0. Guards the division from a quotient of more than 64 bits.
   if (high >= divisor) [[unlikely]] {
     if (divisor == 0 && high == 0 && low == 0) return {0, false};
     return {negative ? least : most, false};
@@ -138,7 +138,7 @@ constexpr Quotient longDivide(std::int64_t a, std::int64_t b, std::int64_t least
   return roundedQuotient<Way>(high, low, magnitude(b), (a ^ b) < 0, least, most);
 }
 
-/// The same where an estimate does not do; kept out of the way of the usual case.
+/// Divides where an estimate does not do; kept out of the way of the usual case.
 template <class Way, int kShift>
 [[gnu::noinline, gnu::cold]] constexpr Quotient farDivide(std::int64_t a, std::int64_t b, std::int64_t least,
                                                           std::int64_t most) {
@@ -200,8 +200,8 @@ constexpr Quotient length(std::int64_t x, std::int64_t y, std::int64_t most) {
   return {static_cast<std::int64_t>(root), true};
 }
 
-/// Whether (2k+1)^2 square >= x^2 2^(2 bits + 2), that is whether x 2^bits / sqrt(square) <= k + 1/2.
-/// 256-bit numbers as four digits; never equal unless both are 0 (see normalizedComponent).
+/// True if (2k+1)^2 square >= x^2 2^(2 bits + 2), that is if x 2^bits / sqrt(square) <= k + 1/2. 256-bit
+/// numbers as four digits; never equal unless both are 0 (see normalizedComponent).
 constexpr bool atMostHalfAbove(std::uint64_t k, Halves square, std::uint64_t x, int bits) {
   const auto add = [](std::uint64_t(&sum)[4], int at, std::uint64_t value) {
     for (; at < 4 && value != 0; ++at) {

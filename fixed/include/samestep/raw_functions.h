@@ -68,7 +68,7 @@ constexpr std::int64_t atan2(std::int64_t y, std::int64_t x) {
   if ((x | y) == 0) return 0;
   const std::uint64_t xSize = magnitude(x), ySize = magnitude(y);
   const bool steep = ySize > xSize;
-  // Written as maximum and minimum, which compilers make without a branch.
+  // Compilers make maximum and minimum in this form without a branch.
   const std::uint64_t large = xSize < ySize ? ySize : xSize;
   const std::uint64_t small = xSize < ySize ? xSize : ySize;
   // The larger one gets its top bit at 59; at most three bits of the smaller are lost.

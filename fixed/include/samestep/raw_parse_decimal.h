@@ -10,7 +10,7 @@
 /// Reads decimals as numbers given as raw bits and a count of fraction bits; fixed_text.h is the interface.
 namespace samestep::raw {
 
-/// What parseDecimal reads before it rounds: the digits of the number and where its point stands.
+/// Digits of a number and the place of its point, as parseDecimal reads them before it rounds.
 struct DecimalDigits {
   std::array<unsigned char, kMaxDecimalLength> digits{};  ///< without zeros in front
   int count = 0;

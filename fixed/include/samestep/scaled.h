@@ -177,7 +177,7 @@ constexpr ScaledFixed<S> toScaled(WideFixed<S> x) {
   return ScaledFixed<S>(x);
 }
 
-/// To nearest, ties to even; saturates.
+/// Rounds to nearest, ties to even; saturates.
 template <FixedNumber S>
 constexpr S toScalar(ScaledFixed<S> x) {
   const std::int64_t shift = -S::kBits - x.exponent();
@@ -189,7 +189,7 @@ constexpr S toScalar(ScaledFixed<S> x) {
   if (x.mantissa() == 0 || shift > 64) {
     return S();
   } else if (shift > 0) {
-    // Up to 64: everything may be shifted out, and half a unit is still a tie.
+    // The shift is up to 64: everything may be shifted out, and half a unit is still a tie.
     const std::uint64_t floor = shift == 64 ? 0 : size >> shift;
     const std::uint64_t rest = shift == 64 ? size : size << (64 - shift) >> (64 - shift);
     const std::uint64_t half = std::uint64_t{1} << (shift - 1);

@@ -60,7 +60,7 @@ struct PortableWords {
       fraction_ -= parts.fraction;
     }
     constexpr void plus(std::int64_t c) { whole_ += static_cast<std::uint64_t>(c); }
-    /// To nearest, ties to even.
+    /// Rounds to nearest, ties to even.
     constexpr std::int64_t rounded() const {
       const std::uint64_t floor =
           whole_ + static_cast<std::uint64_t>(static_cast<std::int64_t>(fraction_) >> 32);
@@ -92,7 +92,7 @@ class Sum {
   constexpr void plus(std::int64_t a, std::int64_t b) { sum_ = sum_ + Words::multiplySigned(a, b); }
   constexpr void minus(std::int64_t a, std::int64_t b) { sum_ = sum_ - Words::multiplySigned(a, b); }
   constexpr void plus(std::int64_t c) { whole_ += static_cast<std::uint64_t>(c); }
-  /// To nearest, ties to even.
+  /// Rounds to nearest, ties to even.
   constexpr std::int64_t rounded() const {
     if constexpr (kBits == 0) {
       return static_cast<std::int64_t>(Words::low(sum_) + whole_);
@@ -153,7 +153,8 @@ struct DivideByDouble : DivideByHalves {
   /// The quotient of a numerator with these low 64 bits to nearest, ties to even, of magnitudes.
   static constexpr std::uint64_t rounded(double estimate, std::uint64_t low, std::uint64_t d) {
     expects(d < kMaxDivisor && estimate < kMaxQuotient);
-    // To the nearest of the estimate, so that the remainder's place says all: within 3/2 of d either way.
+    // The quotient is the nearest to the estimate, so that the remainder's place says all: within 3/2 of d
+    // either way.
     const auto quotient = static_cast<std::uint64_t>(static_cast<std::int64_t>(estimate + 0.5));
     // The remainder is small, so that its low 64 bits are all of it.
     const auto twice = static_cast<std::int64_t>(2 * (low - quotient * d));
@@ -424,7 +425,7 @@ struct Way {
   using Root = RootWay;
 };
 
-/// Without a 128-bit integer, but with floating point.
+/// Way without a 128-bit integer, but with floating point.
 using Portable = Way<PortableWords, DivideByDouble, RootByDouble>;
 /// Nothing but 64-bit integers.
 using IntegerOnly = Way<PortableWords, DivideByHalves, RootByInteger>;
