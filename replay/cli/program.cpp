@@ -109,7 +109,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the first bytes of a file that is no recording look like.
+/// Guesses from the first bytes of a file that is no recording what it is.
 std::string seemsToBe(std::string_view first) {
   if (first.empty()) return "the file is empty";
   if (first.starts_with(std::string_view("\x89SAMS"))) return "this is a snapshot, not a recording";
@@ -122,7 +122,7 @@ std::string seemsToBe(std::string_view first) {
   return "this is text, not a recording";
 }
 
-/// Where a path leads to by links, which may be a file yet to be made.
+/// Path that another leads to by links, which may be of a file yet to be made.
 /// @throws Unusable for links that lead in a ring
 std::string behindLinks(const std::string& path) {
   constexpr int kMostLinks = 40;
@@ -136,7 +136,7 @@ std::string behindLinks(const std::string& path) {
   throw Unusable(path + ": cannot be written: too many links");
 }
 
-/// Whether it is there and no regular file: a device, a pipe, a socket.
+/// True if the path is there and no regular file: a device, a pipe, a socket.
 bool isWrittenThrough(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);

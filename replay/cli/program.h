@@ -17,7 +17,7 @@
 
 namespace samestep::program {
 
-/// What the program exits with.
+/// Exit codes of the program.
 enum Exit : int {
   kGood = 0,
   kMismatch = 1,
@@ -54,7 +54,7 @@ void addScalarOption(CLI::App& app, std::string& scalar);
 /// Adds --ticks; 0 stands for not given.
 void addTicksOption(CLI::App& app, std::uint64_t& ticks);
 
-/// Who computes: no result depends on it.
+/// Choice of who computes: no result depends on it.
 struct ComputeOptions {
   std::string kernel = "best";
   int workers = 1;
@@ -62,7 +62,7 @@ struct ComputeOptions {
   KernelTarget target() const;
 };
 
-/// Of all kernels, those that this machine lacks, too.
+/// Names of all kernels, those that this machine lacks, too.
 std::vector<std::string> kernelNames();
 
 /// Adds --kernel and --workers.
@@ -82,7 +82,7 @@ int withScalar(const std::string& name, Visit&& visit) {
   throw Unusable("this build has no scalar \"" + name + "\"");
 }
 
-/// The same for the scalar of a recording.
+/// Calls `visit` for the scalar of a recording.
 template <class Visit>
 int withScalarOf(ScalarKind kind, Visit&& visit) {
   if (kind == ScalarKind::fixed) return visit(Fixed());

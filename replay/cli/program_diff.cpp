@@ -27,7 +27,7 @@ bool read(const std::string& file, std::vector<std::uint8_t>& bytes) {
   }
 }
 
-/// Whether a whole recording can be used; which of the two is at fault is told here.
+/// True if a whole recording can be used; which of the two is at fault is told here.
 template <Scalar S>
 bool usable(const std::string& file, std::span<const std::uint8_t> bytes, std::uint64_t& ticks) {
   try {

@@ -134,7 +134,7 @@ void addMatch(CLI::App& app, int& result) {
       ->capture_default_str();
   word->add_option("--seed", match.seed, "Of the bots and of what is lost")->capture_default_str();
   word->add_option("-o,--output", options->folder, "A folder for what each peer has recorded");
-  // To see a desync: of SEAT one bit is changed at TICK.
+  // This is there to see a desync: one bit of SEAT is changed at TICK.
   word->add_option("--flip", options->flip)->group("");
   word->callback([options, &result] { result = run(*options); });
 }

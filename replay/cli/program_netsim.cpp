@@ -86,7 +86,7 @@ void tellFailure(const MatchOptions& options, const MatchReport& report, const O
   }
 }
 
-/// What the seeds covered.
+/// Sum of what the seeds covered.
 struct Sum {
   std::uint64_t matches = 0;
   std::uint64_t failed = 0;

@@ -7,7 +7,8 @@
 
 namespace samestep::program {
 
-/// What the recordings need that this program knows of: the handlers of scenes, and the inputs of the arena.
+/// Wiring that recordings need and this program knows of: the handlers of scenes, and the inputs of the
+/// arena.
 template <Scalar S>
 Wiring<S> programWiring() {
   Wiring<S> wiring = namedHandlerWiring<S>();

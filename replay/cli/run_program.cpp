@@ -13,7 +13,7 @@
 
 namespace {
 
-/// What two players compare before a match.
+/// Fingerprints that two players compare before a match.
 std::string fingerprints() {
   using namespace samestep;
   std::string text = "fingerprint fixed " + program::hex(fingerprint<Fixed>());

@@ -9,7 +9,7 @@
 namespace samestep::program {
 namespace {
 
-/// How many letters must be put in, taken out or changed to make one word of the other (Levenshtein).
+/// Number of letters that must be put in, taken out or changed to make one word of the other (Levenshtein).
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

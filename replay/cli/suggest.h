@@ -7,8 +7,8 @@
 
 namespace samestep::program {
 
-/// What is wrong with the first argument that means nothing to the program, and what may have been meant:
-/// "no option --tick; did you mean --ticks?". Empty where each is a word, an option or a value.
+/// Says what is wrong with the first argument that means nothing to the program, and what may have been
+/// meant: "no option --tick; did you mean --ticks?". Empty where each is a word, an option or a value.
 std::string suggestion(const CLI::App& app, std::span<char* const> arguments);
 
 }  // namespace samestep::program

@@ -43,7 +43,7 @@ void checkIds(const Space<S>& space, const Spawn<S>& spawn) {
   }
 }
 
-/// Where an arm of a command ends, in the world.
+/// End of a command's arm, in the world.
 /// @throws IllegalBody for one too long to end there
 template <Scalar S>
 Vector<S> endOfArm(const Body<S>& body, const Vector<S>& arm) {
@@ -95,7 +95,7 @@ struct Applier {
     return {};
   }
   BodyId operator()(const Spawn<S>& c) const {
-    // Tried out elsewhere first: once an id is given out here, it cannot be taken back.
+    // The command is tried out elsewhere first: once an id is given out here, it cannot be taken back.
     const bool given = c.id.valid();
     Space<S> trial;
     trial.setWorldExtent(space.worldExtent());

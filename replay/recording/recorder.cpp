@@ -164,7 +164,7 @@ struct Recorder<S>::Impl {
     if (checking) lastHash = space.hash();
     return id;
   }
-  /// Where there is no memory for it, there is none: the step is recorded.
+  /// Takes a keyframe, or none where there is no memory for it: the step is recorded.
   void takeKeyframe() {
 #if defined(__cpp_exceptions)
     try {
@@ -212,7 +212,7 @@ struct Recorder<S>::Impl {
   Wiring<S> wiring;
   std::uint64_t startStamp;
   std::uint64_t stamp;
-  std::uint64_t broughtIn;  ///< Of the worlds that the Space was given, how many are known here.
+  std::uint64_t broughtIn;  ///< Number of the worlds given to the Space that are known here.
   std::uint64_t lastHash = 0;
   bool checking = false;
   bool finished = false;

@@ -165,7 +165,8 @@ std::span<const std::uint8_t> plainPayload(std::span<const std::uint8_t> bytes,
   return unpacked;
 }
 
-/// What is wrong within a packed section stands, for the reader of an error, where the section does.
+/// Does something within a section; what is wrong within a packed one stands, for the reader of an error,
+/// where the section does.
 template <class Action>
 void inSection(bool packed, std::uint64_t at, Action&& action) {
   if (packed) {
@@ -177,7 +178,7 @@ void inSection(bool packed, std::uint64_t at, Action&& action) {
 
 }  // namespace
 
-/// What looking at all items goes by.
+/// Scan of all items: what it goes by.
 template <Scalar S>
 struct RecordingReader<S>::Scan {
   const RecordingLimits& limits;
@@ -351,7 +352,7 @@ void RecordingReader<S>::scanTicks(const RecordingSection& section, Scan& scan) 
   try {
     if (!section.packed) read();
   } catch (const FormatError&) {
-    // What a crash leaves of the last item is no whole one.
+    // A crash leaves no whole last item.
   }
 #else
   if (!section.packed) read();
@@ -505,7 +506,7 @@ WorldState<S> RecordingReader<S>::world(std::size_t index, const WorldLimits& li
     world = decodeWorld<S>(plain, offset, limits);
     if (offset != plain.size()) failFormat(offset, "something follows the world of a keyframe");
   });
-  // That of the first world is compared by who replays it: a mismatch at tick 0.
+  // The hash of the first world is compared by who replays it: a mismatch at tick 0.
   if (index > 0 && hashOfWorld(world, hashOfShapes(world.shapes)) != keyframe.hash) {
     failFormat(keyframe.offset, "the world of a keyframe has another hash than the tick it stands after");
   }

@@ -19,13 +19,13 @@ inline constexpr std::uint64_t kWorldAt = 28;
 inline constexpr std::uint32_t kMaxSpawnShapes = 256;
 inline constexpr std::uint32_t kMaxInputBytes = 1u << 16;
 
-/// What a section of a recording holds, from version 3 on.
+/// Kind of a recording's section, from version 3 on.
 enum class SectionKind : std::uint8_t {
   keyframe = 1,  ///< Tick, hash, world.
   ticks = 2,     ///< Items of whole ticks.
   notes = 3,     ///< Keys and values without meaning here.
-  index = 4,     ///< Where the keyframes are.
-  end = 5,       ///< How many ticks there are, and where the index is.
+  index = 4,     ///< Places of the keyframes.
+  end = 5,       ///< Number of ticks, and the place of the index.
 };
 
 /// In the byte of a section's kind: its payload is packed by zstd.

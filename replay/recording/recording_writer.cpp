@@ -126,7 +126,7 @@ void RecordingWriter::confirm(std::uint64_t tick) {
 
 void RecordingWriter::setRewindTicks(std::uint32_t most) {
   if (ticks_ - oldest_ > most) confirm(ticks_ - most);
-  // Also of the last tick that is not given, whose section is not cut yet.
+  // There is a mark of the last tick that is not given, too, whose section is not cut yet.
   std::vector<Mark> kept(std::size_t{most} + 1);
   for (std::uint64_t tick = oldest_; tick <= ticks_; ++tick) {
     kept[static_cast<std::size_t>(tick % kept.size())] = markOf(tick);

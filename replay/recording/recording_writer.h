@@ -22,7 +22,7 @@ class RecordingWriter {
 
   /// Gives the header, and the first world with its hash.
   void begin(std::span<const std::uint8_t> header, std::uint64_t hash, std::span<const std::uint8_t> world);
-  /// Where the items of the next tick are appended.
+  /// Bytes to which the items of the next tick are appended.
   std::vector<std::uint8_t>& items() { return items_; }
   /// Before a step is made: gives what can no longer be taken back then, and makes room, so that endTick
   /// takes no memory. Where the sink throws, the same is given once more.
@@ -30,7 +30,7 @@ class RecordingWriter {
   /// The items so far are those of one more tick, after which the world has this hash.
   /// @pre prepareTick() since the last one
   void endTick(std::uint64_t hash);
-  /// Where the world after the last tick is appended, if a keyframe of it may be due; else null.
+  /// Bytes to which the world after the last tick is appended, if a keyframe of it may be due; else null.
   std::vector<std::uint8_t>* keyframeDue();
   /// Takes the keyframe that was due, unless it has become too large for the ticks since the last one.
   void endKeyframe();
@@ -62,7 +62,8 @@ class RecordingWriter {
     std::uint64_t end = 0;
     std::uint64_t hash = 0;
   };
-  /// How large a world last was that was looked at for a keyframe, and the tick of the last one taken.
+  /// Pace of keyframes: the size of the last world that was looked at for one, and the tick of the last one
+  /// taken.
   struct Pace {
     std::uint64_t bytes = 0;
     std::uint64_t taken = 0;
@@ -105,7 +106,7 @@ class RecordingWriter {
   std::uint64_t settled_ = 0;  ///< The last tick that was looked at for the end of a section.
   std::uint64_t lastCut_ = 0;  ///< The last tick whose items are given.
   std::uint64_t itemsGiven_ = 0;
-  Pace pace_;                        ///< Of what waits no longer.
+  Pace pace_;                        ///< Pace of what waits no longer.
   std::vector<std::uint8_t> items_;  ///< Not given yet.
   std::vector<Mark> marks_;          ///< A ring of the ticks that can be gone back to.
   std::vector<Waiting> waiting_;  ///< The first of them are in use, in order; the others keep their memory.

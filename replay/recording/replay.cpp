@@ -7,7 +7,7 @@ namespace samestep {
 
 namespace {
 
-/// Whether the ids that a spawn asks for are beyond the limits: room is taken up to the highest.
+/// True if the ids that a spawn asks for are beyond the limits: room is taken up to the highest.
 template <Scalar S>
 bool asksForMore(const Command<S>& command, const RecordingLimits& limits) {
   const auto* spawn = std::get_if<Spawn<S>>(&command);

@@ -26,7 +26,7 @@ void readKind(std::uint8_t byte, RecordingSection& section) {
   if (section.packed && !packable) failFormat(section.at, "a section that is never packed");
 }
 
-/// What is there of a section whose bytes end before it does.
+/// Section whose bytes end before it does, as far as it is there.
 RecordingSection cutShort(RecordingSection section, std::uint64_t bytes, bool mayBeCut) {
   if (!mayBeCut) failFormat(section.at, "cut short: a section goes beyond the end");
   section.cut = true;

@@ -12,7 +12,7 @@ namespace samestep {
 struct RecordingSection {
   SectionKind kind{};
   bool packed = false;
-  /// Whether the recording ends within it; of a payload that is not packed, what is there is told.
+  /// True if the recording ends within it; of a payload that is not packed, what is there is told.
   bool cut = false;
   std::uint64_t at = 0;
   std::uint64_t payloadAt = 0;

@@ -260,7 +260,7 @@ struct Describer {
       text += (i == 0 ? ": " : " ") + hexBits(input.bytes[i]).substr(16);
     }
     if (input.bytes.size() <= kMostShown) return text;
-    // What follows may be all that differs.
+    // All that differs may be in what follows.
     return text + " ..., all of them XXH3 " + hexBits(XXH3_64bits(input.bytes.data(), input.bytes.size()));
   }
 };

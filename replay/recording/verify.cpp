@@ -10,7 +10,7 @@ namespace samestep {
 
 namespace {
 
-/// What the first bytes and the first world have that was not expected; null for nothing.
+/// Name of what the first bytes and the first world have that was not expected; null for nothing.
 template <Scalar S>
 const char* unexpectedIn(const Replay<S>& replay, const Expectations& expected) {
   if (expected.scalar && *expected.scalar != ScalarTraits<S>::kKind) return "the scalar";
@@ -53,7 +53,7 @@ struct CommandWatch {
 template <Scalar S>
 class KeyframeWatch {
  public:
-  /// Whether there is none for the world as it is now, or it is that world.
+  /// True if there is none for the world as it is now, or it is that world.
   bool agrees(const Replay<S>& replay) {
     const auto keyframes = replay.reader().keyframes();
     if (next_ == keyframes.size() || keyframes[next_].tick != replay.tick()) return true;
@@ -64,7 +64,7 @@ class KeyframeWatch {
   std::size_t next_ = 0;
 };
 
-/// Whether the world is as recorded; notes the first one that is not, and how it goes on.
+/// Tells whether the world is as recorded; notes the first one that is not, and how it goes on.
 template <Scalar S>
 bool compare(const Replay<S>& replay, KeyframeWatch<S>& keyframes, VerifyResult& result) {
   const std::uint64_t recorded = replay.recordedHash();

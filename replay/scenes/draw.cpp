@@ -54,7 +54,7 @@ class Artist {
   static std::string attribute(const char* name, S value) {
     return std::string(" ") + name + "=\"" + number(value) + "\"";
   }
-  /// Of a place: y turned over.
+  /// Writes a place: y turned over.
   static std::string place(const char* x, const char* y, const Vector<S>& at) {
     return attribute(x, at.x) + attribute(y, -at.y);
   }

@@ -9,7 +9,7 @@
 namespace samestep::json {
 namespace {
 
-/// Where the reader is. nlohmann's events carry no place, so the iterator it reads through keeps it.
+/// Position of the reader. nlohmann's events carry no place, so the iterator it reads through keeps it.
 struct Position {
   std::uint32_t line = 1;
   bool endsLine = false;  ///< The character read last ended a line.

@@ -16,9 +16,9 @@ struct Node {
   Kind kind = Kind::null;
   bool truth = false;
   std::uint32_t line = 0;
-  std::string text;               ///< Of a number or string.
-  std::vector<std::string> keys;  ///< Of an object, one per child.
-  std::vector<Node> children;     ///< Of an array or object.
+  std::string text;               ///< Text of a number or string.
+  std::vector<std::string> keys;  ///< Keys of an object, one per child.
+  std::vector<Node> children;     ///< Children of an array or object.
 
   /// The value of a key; null if there is none.
   const Node* find(std::string_view key) const;

@@ -14,7 +14,7 @@
 
 namespace samestep {
 
-/// What a scene makes of each shape of a CSV file of bodies.
+/// Surface that a scene gives each shape of a CSV file of bodies.
 template <Scalar S>
 struct CsvSurface {
   S density{1};

@@ -14,7 +14,7 @@
 
 namespace samestep {
 
-/// Why a text is no number of S, for people; null where it is one.
+/// Reason why a text is no number of S, for people; null where it is one.
 const char* reasonOf(DecimalStatus status);
 
 /// A value of a scene file and the way to it, so that whatever is wrong with it can be told with its place.
@@ -24,16 +24,16 @@ class Cursor {
       : node_(&node), file_(&file), path_(std::move(path)) {}
 
   [[noreturn]] void fail(const std::string& reason) const;
-  /// What fail throws.
+  /// Error that fail throws.
   SceneError error(const std::string& reason) const;
   std::uint32_t line() const { return node_->line; }
 
   /// Refuses what is no object, and keys other than these.
   void allow(std::initializer_list<std::string_view> keys) const;
   bool has(std::string_view key) const { return node_->find(key) != nullptr; }
-  /// Of an object: refuses it where the key is missing.
+  /// Value under a key of an object: refuses it where the key is missing.
   Cursor at(std::string_view key) const;
-  /// Of an array.
+  /// Number of values of an array.
   std::uint32_t size() const;
   Cursor item(std::uint32_t index) const;
 

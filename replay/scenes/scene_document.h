@@ -10,11 +10,11 @@
 
 namespace samestep {
 
-/// What SceneSource holds: a parsed file, or the name and number of a family.
+/// Document that SceneSource holds: a parsed file, or the name and number of a family.
 struct SceneSource::Document {
   std::string name;
-  std::string file;             ///< As errors call it.
-  std::string folder;           ///< Where the files are that it names; with a slash at the end, or empty.
+  std::string file;             ///< Name of the file in errors.
+  std::string folder;           ///< Folder of the files that it names; with a slash at the end, or empty.
   SceneFiles* files = nullptr;  ///< Null for those on disk.
   json::Node root;
   std::string family;  ///< Empty for a file.

@@ -40,7 +40,7 @@ Command<S> commandWith(CommandKind kind, const Vector<S>& value, const Vector<S>
   }
 }
 
-/// How many numbers the value of a command has.
+/// Number of numbers that the value of a command has.
 int numbersOf(CommandKind kind) {
   switch (kind) {
     case CommandKind::setAngularVelocity:
@@ -117,7 +117,7 @@ void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
     if (at.at("body").has("grid")) at.at("body").at("grid").fail("a spawn brings in one body");
     const Cursor body = at.at("body");
     const Spawn<S> made = readBody(body);
-    // Tried out, so that what cannot come in is told before the scene runs.
+    // The event is tried out, so that what cannot come in is told before the scene runs.
     Space<S> trial;
     trial.setWorldExtent(scene_.space_.worldExtent());
     noteUnsteppable(body, trial.body(body.guard([&] { return applyCommand<S>(trial, made); })));

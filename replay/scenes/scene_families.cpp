@@ -11,7 +11,7 @@ namespace {
 /// A small generator of our own, the same everywhere (Knuth's 64-bit linear congruence, its upper bits).
 class Draw {
  public:
-  /// From 0 to below `bound`.
+  /// Random number from 0 to below `bound`.
   int below(int bound) {
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     return static_cast<int>((state_ >> 33) % static_cast<std::uint32_t>(bound));

@@ -10,10 +10,10 @@ namespace samestep {
 struct ChartPoint {
   int count = 0;            ///< Iterations or substeps.
   double milliseconds = 0;  ///< Per step, the median of the rounds.
-  double fastest = 0;       ///< Of the rounds, ms per step.
+  double fastest = 0;       ///< Time of the fastest round, ms per step.
   double slowest = 0;
   double error = 0;    ///< m; what it is of, Chart::measure says.
-  double overlap = 0;  ///< Of kinds rest and overlap, what error is the sum of, m.
+  double overlap = 0;  ///< Overlap that error is the sum of, in kinds rest and overlap, m.
   double drift = 0;
   bool onFront = false;  ///< No faster one is as accurate, to 1 %.
 };
@@ -30,7 +30,7 @@ struct ChartLine {
 struct Chart {
   std::string scene;
   std::string kind;                  ///< One word for the CSV: exact, reference, rest or overlap.
-  std::vector<std::string> measure;  ///< What error means, in lines of up to 100 characters.
+  std::vector<std::string> measure;  ///< Meaning of error, in lines of up to 100 characters.
   /// Below it, errors say nothing: how far the reference itself may be off, m; 0 for none.
   double resolution = 0;
   std::vector<ChartLine> lines;

@@ -21,7 +21,7 @@ class LogAxis {
   /// @param low, high  0 < low <= high
   LogAxis(double low, double high);
 
-  /// Where a value stands: 0 at the low end of the axis, 1 at the high end; held within them.
+  /// Place of a value: 0 at the low end of the axis, 1 at the high end; held within them.
   double place(double value) const;
   /// 1 to 9 times powers of ten, by rising value. Powers of ten have labels; where that makes fewer than
   /// three, also 2 and 5 times them; where that is too few still, 3 and 7 times.

@@ -41,7 +41,7 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-/// Whether it is one of the project's own scenes: a user's may have the name of one.
+/// True if it is one of the project's own scenes: a user's may have the name of one.
 bool isOurs(const SceneSource& source) {
   const SceneSource::Document& document = source.document();
   if (!document.family.empty()) return true;
@@ -64,7 +64,8 @@ double deepestOverlap(Space<S>& space) {
   S deepest{};
   space.eachArbiter([&](Arbiter<S>& arbiter) {
     if (arbiter.pair().solved == 0) return;
-    // Where the shapes are now: the arbiter may know where they were before the step moved them.
+    // The shapes are asked where they are now: the arbiter may know where they were before the step moved
+    // them.
     const ContactPointSet<S> touch = shapesCollide(arbiter.shapeDataA(), arbiter.bodyDataA().transform(),
                                                    arbiter.shapeDataB(), arbiter.bodyDataB().transform());
     for (int i = 0; i < touch.count; ++i) deepest = max(deepest, -touch.points[i].distance);
@@ -92,7 +93,7 @@ double secondsPerStep(const SceneSource& source, const Method& method, int count
   return seconds / timed;
 }
 
-/// What the errors of one scene are measured by.
+/// Yardstick by which the errors of one scene are measured.
 class Yardstick {
  public:
   Yardstick(const SceneSource& source, std::uint64_t steps);

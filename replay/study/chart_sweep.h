@@ -13,7 +13,7 @@
 
 namespace samestep {
 
-/// How a scene is swept.
+/// Options of a sweep.
 struct SweepOptions {
   std::uint64_t steps = 0;  ///< 0: as the exact answer says, else 330 or what the scene lasts.
   int rounds = 3;           ///< In which all settings take turns; at least 1.

@@ -27,8 +27,8 @@ Spots slidBlocks(const StartWorld& start, double time) {
   return spots;
 }
 
-/// How high a ball is that falls from a height and bounces with restitution e: from each bounce it leaves
-/// with e times the speed it came with.
+/// Height of a ball that falls from a height and bounces with restitution e: from each bounce it leaves with
+/// e times the speed it came with.
 double bouncedHeight(double height, double gravity, double e, double time) {
   double speed = sqrt(2 * gravity * height);
   const double fall = speed / gravity;

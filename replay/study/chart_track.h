@@ -9,35 +9,35 @@
 
 namespace samestep {
 
-/// Where the centre of mass of a body is, m.
+/// Place of the centre of mass of a body, m.
 struct Spot {
   BodyId body{};
   double x = 0;
   double y = 0;
 };
 
-/// Where bodies are at one time, by rising index of their ids.
+/// Places of bodies at one time, by rising index of their ids.
 using Spots = std::vector<Spot>;
 
-/// Where bodies are after the first step, the second, and so on.
+/// Places of bodies after the first step, the second, and so on.
 using Track = std::vector<Spots>;
 
-/// Of all dynamic bodies.
+/// Places of all dynamic bodies.
 template <Scalar S>
 Spots spotsOf(const Space<S>& space);
 
 /// The root mean square distance, m, of the bodies that both have; 0 if there are none.
 double distanceBetween(const Spots& a, const Spots& b);
-/// The same over all steps that both have.
+/// Distance over all steps that both have.
 double distanceBetween(const Track& a, const Track& b);
 
-/// What an exact answer starts from: the world before its first step, in double.
+/// World from which an exact answer starts: before its first step, in double.
 struct StartWorld {
   struct Moving {
     Spot spot;
-    double cosine, sine;  ///< Of its angle.
+    double cosine, sine;  ///< Cosine and sine of its angle.
     double turning;       ///< rad/s
-    double radius;        ///< Of its first shape if that is a circle, else 0; m.
+    double radius;        ///< Radius of its first shape if that is a circle, else 0; m.
     double friction, elasticity;
   };
   std::vector<Moving> bodies;  ///< The dynamic ones that have shapes, by rising index.
@@ -51,11 +51,11 @@ StartWorld startOf(const Space<S>& space);
 
 /// A scene whose exact answer is known.
 struct ExactAnswer {
-  const char* scenes;   ///< Those whose names begin so.
+  const char* scenes;   ///< Scenes are those whose names begin so.
   std::uint64_t steps;  ///< Over which it is compared unless asked otherwise.
   std::uint64_t most;   ///< Over how many it holds at the most.
-  const char* measure;  ///< What is compared with what.
-  /// Where the bodies whose answer is known are after `time` seconds.
+  const char* measure;  ///< Says what is compared with what.
+  /// Places of the bodies whose answer is known, after `time` seconds.
   Spots (*after)(const StartWorld& start, double time);
 };
 

@@ -10,7 +10,7 @@
 
 namespace samestep {
 
-/// How the surface of a body in a trial behaves.
+/// Surface of a body in a trial.
 template <class S>
 struct TrialSurface {
   S friction{};
@@ -21,7 +21,7 @@ struct TrialSurface {
 inline constexpr int kWalkerSpeeds[] = {1, 2, 3, 4, 6, 8, 12, 16};
 inline constexpr int kWalkerTop = 2 * static_cast<int>(std::size(kWalkerSpeeds));
 
-/// Whether a box of 1 m that may not turn crosses 12 m of a floor without friction that is made of flush
+/// True if a box of 1 m that may not turn crosses 12 m of a floor without friction that is made of flush
 /// parts of 1 m, and still has its speed.
 /// @tparam Trial  a world with gravity, of one engine: addStaticBox, addStaticSegment, addBox, addBall, run,
 ///                center, velocity, angle; its Number computes places
@@ -50,7 +50,7 @@ bool walkerArrives(Trial& trial, int rung) {
 /// A pass is as close as 64 mm / rung.
 inline constexpr int kPassTop = 64;
 
-/// Whether a ball that flies past the corner of a box at 2 m/s without touching it flies on as before.
+/// True if a ball that flies past the corner of a box at 2 m/s without touching it flies on as before.
 template <class Trial>
 bool passIsLeftAlone(Trial& trial, int rung) {
   using S = typename Trial::Number;
@@ -70,14 +70,14 @@ bool passIsLeftAlone(Trial& trial, int rung) {
 
 inline constexpr int kBounceTop = 60;
 
-/// Whether an elastic box that falls flat from 1.8 m still bounces as high, and flat, after so many bounces.
+/// True if an elastic box that falls flat from 1.8 m still bounces as high, and flat, after so many bounces.
 template <class Trial>
 bool bouncesKeepTheirHeight(Trial& trial, int bounces) {
   using S = typename Trial::Number;
   trial.addStaticBox({S(0), S(-1)}, S(20), S(2), {S(0), S(1)});
   const S fall = ratio<S>(18, 10);
   const auto box = trial.addBox({S(0), fall + ratio<S>(1, 2)}, S(1), S(1), {}, {S(0), S(1)}, true);
-  // From one highest point to the next it takes 1.2 s.
+  // It takes 1.2 s from one highest point to the next.
   for (int i = 0; i < bounces; ++i) {
     S highest = S(0);
     for (int step = 0; step < 12 * Trial::kStepsPerSecond / 10; ++step) {

@@ -34,7 +34,7 @@ struct NastyPair {
   int shapeB;
   RawPoint positionB;
   std::int64_t angleB;
-  bool touches;  ///< Whether they meet to 2^-20 m, turning by an angle being rounded; else they do not.
+  bool touches;  ///< True if they meet to 2^-20 m, turning by an angle being rounded; else they do not.
 };
 
 std::span<const NastyShape> nastyShapes();

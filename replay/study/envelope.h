@@ -27,9 +27,9 @@ std::vector<Setting> limitSettings();
 
 /// Something that is made harder rung by rung until it fails.
 struct Ladder {
-  const char* name;     ///< As the command line and the CSV call it.
-  const char* heading;  ///< Of its column: what a rung that holds means.
-  const char* trial;    ///< What is done at a rung.
+  const char* name;     ///< Name on the command line and in the CSV.
+  const char* heading;  ///< Heading of its column: what a rung that holds means.
+  const char* trial;    ///< Text that says what is done at a rung.
   const char* failure;  ///< When that has failed.
   int top;              ///< The last rung.
   bool (*holds)(const Setting& setting, int rung);
@@ -46,7 +46,7 @@ struct Limit {
   std::string method;
   int count = 0;
   int holds = 0;  ///< The last rung that held; 0 where none did.
-  int top = 0;    ///< Of the ladder: whoever holds there has shown no limit.
+  int top = 0;    ///< Top of the ladder: whoever holds there has shown no limit.
 
   friend bool operator==(const Limit&, const Limit&) = default;
 };

@@ -199,7 +199,7 @@ bool bulletsHoldAt(const Setting& setting, int speed) {
   });
 }
 
-/// Whether a shape may be that of a body that moves.
+/// True if a shape may be that of a body that moves.
 bool mayMove(const NastyShape& shape) { return makeNasty<Fixed>(shape).extent() <= Fixed(kMaxDynamicExtent); }
 
 template <Scalar S>
@@ -239,7 +239,7 @@ bool pairParts(const Setting& setting, const NastyPair& pair) {
   return most <= S(10);
 }
 
-/// Whether each of the first `rung` holds, as holds(S(), thing) has it.
+/// True if each of the first `rung` holds, as holds(S(), thing) has it.
 template <class Thing, class Holds>
 bool firstHold(const Setting& setting, std::span<const Thing> things, int rung, Holds&& holds) {
   return std::all_of(things.begin(), things.begin() + rung, [&](const Thing& thing) {
@@ -257,7 +257,7 @@ bool holdsInScalarOf(const Setting& setting, int gravity, Climb&& climb) {
   });
 }
 
-/// Whether the walker arrives at each speed and floor up to the rung.
+/// True if the walker arrives at each speed and floor up to the rung.
 bool walkersArrive(const Setting& setting, int rung) {
   for (int i = 1; i <= rung; ++i) {
     if (!holdsInScalarOf(setting, 10, [&](auto& trial) { return walkerArrives(trial, i); })) return false;

@@ -12,13 +12,13 @@ namespace samestep {
 /// A way of solving a scene that is compared with others: a line of a chart, and with a count a column of a
 /// table of limits.
 struct Method {
-  const char* name;    ///< As charts and tables call it; no commas.
+  const char* name;    ///< Name in charts and tables; no commas.
   const char* scalar;  ///< "double" or "fixed".
   SolverKind solver;
   ContactPrecision precision;
-  const char* unit;             ///< What its count counts: "iterations" or "substeps".
-  std::span<const int> counts;  ///< What a chart sweeps.
-  std::span<const int> limits;  ///< Whose limits are looked for: usual, and thorough.
+  const char* unit;             ///< Name of what its count counts: "iterations" or "substeps".
+  std::span<const int> counts;  ///< Counts that a chart sweeps.
+  std::span<const int> limits;  ///< Counts whose limits are looked for: usual, and thorough.
 };
 
 /// All methods of this build. A new one is a row of the table behind it.

@@ -14,7 +14,7 @@
 namespace samestep::program {
 namespace {
 
-/// What a server knows of the match, as it stands in the arguments.
+/// Words of a server that tell the match it knows, as they stand in the arguments.
 struct ExpectedWords {
   std::string firstHash;
   std::string timeStep;
@@ -94,7 +94,7 @@ void addExpectations(CLI::App& word, ExpectedWords& words) {
 
 namespace {
 
-/// Which files are verified, and by whom.
+/// Files to verify, and who verifies them.
 struct Batch {
   std::vector<std::string> arguments;
   int jobs = 1;
@@ -242,7 +242,7 @@ void addVerify(CLI::App& app, const Wirings& wirings, int& result) {
   addComputeOptions(*word, *compute);
   auto expected = std::make_shared<ExpectedWords>();
   addExpectations(*word, *expected);
-  // For recordings from strangers.
+  // These are for recordings from strangers.
   addLimits(*word, plan->options.limits, plan->seconds);
   word->callback([batch, plan, compute, expected, word, &result] {
     plan->options.kernel = compute->target();

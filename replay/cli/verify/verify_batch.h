@@ -15,7 +15,7 @@ namespace samestep::program {
 /// @throws Unusable for a folder without any
 std::vector<std::string> filesNamed(const std::vector<std::string>& arguments);
 
-/// Those of one shard out of `count`, by the work they seem to be: steps times the size of the first world,
+/// Files of one shard out of `count`, by the work they seem to be: steps times the size of the first world,
 /// as their first and last bytes tell it, greatest first, each to the shard that has least.
 /// @param shard  1 to `count`
 std::vector<std::string> shardOf(const std::vector<std::string>& files, std::uint64_t shard,

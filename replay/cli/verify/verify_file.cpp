@@ -11,11 +11,11 @@
 namespace samestep::program {
 namespace {
 
-/// What a verification is told after each tick.
+/// Watch of a verification, told after each tick.
 struct Watch {
   Progress progress{"verify", 0};
   bool quiet = false;
-  std::int64_t end = 0;  ///< By milliseconds(); 0 for none.
+  std::int64_t end = 0;  ///< Time of the end, by milliseconds(); 0 for none.
 
   bool after(std::uint64_t done, std::uint64_t total) {
     if (!quiet) progress.at(done, total);
@@ -26,7 +26,8 @@ struct Watch {
 
 std::string number(std::uint64_t value) { return std::to_string(value); }
 
-/// As a string of JSON: bytes that are no ASCII as escapes, so that a line is one whatever a file is called.
+/// Writes a string of JSON: bytes that are no ASCII as escapes, so that a line is one whatever a file is
+/// called.
 std::string jsonText(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -96,7 +97,7 @@ std::string claimLine(const ClaimAt& claim) {
          printable({claim.value.begin(), claim.value.end()});
 }
 
-/// For people, on the standard output; empty for what belongs to the error output.
+/// Line for people, on the standard output; empty for what belongs to the error output.
 std::string lineFor(const Judgement& judgement, std::int64_t milliseconds) {
   switch (judgement.verdict) {
     case Verdict::verified:

@@ -8,7 +8,7 @@
 
 namespace samestep::program {
 
-/// How `samestep verify` goes about each file.
+/// Plan of `samestep verify` for each file.
 struct VerifyPlan {
   VerifyOptions options;
   const Wirings* wirings = nullptr;
@@ -17,7 +17,7 @@ struct VerifyPlan {
   bool quiet = false;  ///< No progress on the terminal.
 };
 
-/// What is said of a file.
+/// Answer about a file.
 struct Said {
   Verdict verdict = Verdict::unusable;
   std::uint64_t ticks = 0;  ///< Replayed.
@@ -27,7 +27,7 @@ struct Said {
 
 /// Verifies one file. Whatever it is, there is something to be said of it.
 Said verifyFile(const std::string& file, const VerifyPlan& plan);
-/// What is said of a file that could not be come to an end with.
+/// Answer about a file that could not be come to an end with.
 Said saidUnusable(const std::string& file, const std::string& reason, bool json);
 /// The exit code that a verdict stands for.
 int exitCodeOf(Verdict verdict);

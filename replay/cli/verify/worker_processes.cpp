@@ -32,7 +32,7 @@ WorkerProcesses::WorkerProcesses(const std::vector<std::string>& files, const Ve
 #ifdef SAMESTEP_PROCESSES
 namespace {
 
-/// What goes before the text of an answer.
+/// Head of an answer, before its text.
 struct AnswerHead {
   std::uint64_t ticks = 0;
   std::uint64_t out = 0;
@@ -71,7 +71,7 @@ void limitMemory(std::uint64_t megabytes) {
   ::setrlimit(RLIMIT_AS, &limit);
 }
 
-/// What cannot even be said is left to the parent, which finds the process gone.
+/// Verifies a file; a failure that cannot even be said is left to the parent, which finds the process gone.
 Said verifyOrEnd(const std::string& file, const VerifyPlan& plan) {
   try {
     return verifyFile(file, plan);
@@ -80,7 +80,7 @@ Said verifyOrEnd(const std::string& file, const VerifyPlan& plan) {
   }
 }
 
-/// What became of a process, in words.
+/// Says in words what became of a process.
 std::string endOf(int status) {
   if (WIFSIGNALED(status)) return "was ended by signal " + std::to_string(WTERMSIG(status));
   return "ended with code " + std::to_string(WEXITSTATUS(status));
@@ -111,7 +111,7 @@ void WorkerProcesses::start(Worker& worker) {
   const pid_t process = ::fork();
   if (process < 0) throw Unusable("no more processes");
   if (process == 0) {
-    // Those of the others would keep them waiting.
+    // The pipes of the others would keep them waiting.
     for (const Worker& other : workers_) {
       if (other.process == 0) continue;
       ::close(other.orders);

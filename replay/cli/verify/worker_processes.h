@@ -15,7 +15,7 @@ namespace samestep::program {
 /// Processes that verify files, each one at a time as it is told by a pipe, and answer by another.
 class WorkerProcesses {
  public:
-  /// Whether this system has processes.
+  /// True if this system has processes.
   static bool available();
 
   WorkerProcesses(const std::vector<std::string>& files, const VerifyPlan& plan, std::size_t count,

@@ -11,16 +11,16 @@
 
 namespace samestep {
 
-// What a player or the game does to a world between two steps. A command is applied as a whole or, where the
-// Space refuses it, not at all: it then throws what the Space throws and the world is as it was. Numbers have
-// the units and ranges of the Body function they are named after.
+// Commands say what a player or the game does to a world between two steps. A command is applied as a whole
+// or, where the Space refuses it, not at all: it then throws what the Space throws and the world is as it
+// was. Numbers have the units and ranges of the Body function they are named after.
 
 /// An impulse in N s; see Body::applyImpulse.
 template <Scalar S>
 struct ApplyImpulse {
   BodyId body{};
   Vector<S> impulse{};
-  /// From the centre of mass to where it acts, in world axes, m.
+  /// Lever arm from the centre of mass to where it acts, in world axes, m.
   Vector<S> arm{};
 
   template <class Self, class Visitor>
@@ -36,7 +36,7 @@ template <Scalar S>
 struct ApplyForce {
   BodyId body{};
   Vector<S> force{};
-  /// From the centre of mass to where it acts, in world axes, m.
+  /// Lever arm from the centre of mass to where it acts, in world axes, m.
   Vector<S> arm{};
 
   template <class Self, class Visitor>
@@ -128,7 +128,7 @@ template <Scalar S>
 using Command = std::variant<ApplyImpulse<S>, ApplyForce<S>, SetVelocity<S>, SetAngularVelocity<S>,
                              SetPosition<S>, SetAngle<S>, Spawn<S>, Remove, UserInput>;
 
-/// What a recording calls a command.
+/// Kind of a command in a recording.
 enum class CommandKind : std::uint8_t {
   applyImpulse = 0,
   applyForce = 1,
@@ -149,15 +149,15 @@ CommandKind kindOf(const Command<S>& command) {
 /// "impulse", "spawn", ...: also the word that scenes use.
 const char* commandName(CommandKind kind);
 
-/// What a game says to a claim of a recording.
+/// Answer of a game to a claim of a recording.
 enum class ClaimCheck : std::uint8_t {
   holds,
   isFalse,
   unknown,  ///< It knows no such key.
 };
 
-/// What a Space needs beside its state, before a recorded world is put in: the functions behind the numbers
-/// its handlers and bodies name, and the function that understands the game's own input.
+/// Wiring that a Space needs beside its state, before a recorded world is put in: the functions behind the
+/// numbers its handlers and bodies name, and the function that understands the game's own input.
 template <Scalar S>
 struct Wiring {
   /// Registers functions with a new Space; null for none.
@@ -167,8 +167,8 @@ struct Wiring {
   /// ids that a game keeps beside its Space for this are Id::anywhere.
   void (*applyInput)(Space<S>& space, std::span<const std::uint8_t> bytes, void* data) = nullptr;
   void* data = nullptr;
-  /// Whether what a recording claims is true of the world as it is now; null where the game knows no claims.
-  /// The value is what Recorder::claim was given, or what a stranger put there.
+  /// Tells whether what a recording claims is true of the world as it is now; null where the game knows no
+  /// claims. The value is what Recorder::claim was given, or what a stranger put there.
   ClaimCheck (*checkClaim)(const Space<S>& space, std::string_view key, std::span<const std::uint8_t> value,
                            void* data) = nullptr;
 };

@@ -11,13 +11,13 @@
 
 namespace samestep {
 
-/// What is to be said of a recording.
+/// Verdict on a recording.
 enum class Verdict : std::uint8_t {
   verified,       ///< All of it came out as recorded, and no claim was found false.
   mismatch,       ///< Another world came out after a step.
   falseClaim,     ///< The worlds are as recorded, and do not have what is claimed of them.
   unexpected,     ///< It is another match than it was to be; see Expectations.
-  incomplete,     ///< What is there came out as recorded, but it ends too early.
+  incomplete,     ///< The steps that are there came out as recorded, but it ends too early.
   otherRevision,  ///< It was made by another simulation revision, whose build can judge it.
   unusable,       ///< It cannot be read, or the world refuses what is done in it, or it outgrows the limits.
   stopped,        ///< VerifyOptions::progress said so.
@@ -33,13 +33,13 @@ struct Judgement {
   std::string reason;
   /// The step that the verdict is about: of a mismatch or a false claim, or the last one replayed.
   std::uint64_t tick = 0;
-  /// Of what cannot be used in the bytes, or of a command that is not allowed.
+  /// Offset of what cannot be used in the bytes, or of a command that is not allowed.
   std::uint64_t offset = 0;
   /// The build that recorded it; 0 where even that cannot be read.
   std::uint32_t revision = 0;
   /// XXH3-64 of all bytes: with kSimulationRevision, what the verdict is about.
   std::uint64_t content = 0;
-  /// What replaying showed, as far as it came.
+  /// Result of replaying, as far as it came.
   VerifyResult result;
 };
 
@@ -66,7 +66,7 @@ const Wiring<S>& wiringOf(const Wirings& wirings) {
 template <Scalar S>
 Judgement judge(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
                 const VerifyOptions& options = {});
-/// The same for a recording of either scalar, with a wiring for each.
+/// Judges a recording of either scalar, with a wiring for each.
 Judgement judge(std::span<const std::uint8_t> bytes, const Wirings& wirings = {},
                 const VerifyOptions& options = {});
 

@@ -33,9 +33,10 @@ CallbackNumber handlerNumber(std::string_view name);
 template <Scalar S>
 void registerNamedHandlers(Space<S>& space);
 
-/// What a claim with one of these keys must say of a world, as text: "samestep.bodies", how many there are;
-/// "samestep.user-data.N", the user data of the body with index N, such as the handler "count" keeps a score
-/// in; "samestep.hash", 16 hexadecimal digits. Empty for any other key, and for a body that is not there.
+/// Text that a claim with one of these keys must have to be true of a world: "samestep.bodies", how many
+/// there are; "samestep.user-data.N", the user data of the body with index N, such as the handler "count"
+/// keeps a score in; "samestep.hash", 16 hexadecimal digits. Empty for any other key, and for a body that is
+/// not there.
 template <Scalar S>
 std::string namedClaim(const Space<S>& space, std::string_view key);
 

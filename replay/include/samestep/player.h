@@ -11,7 +11,7 @@
 
 namespace samestep {
 
-/// What is known of the world that a Player shows.
+/// Trust in the world that a Player shows.
 enum class Trust : std::uint8_t {
   proven,   ///< It came out of the first world step by step, and each hash was that of the recording.
   claimed,  ///< It came from a keyframe beyond what was proven: the recording says so.
@@ -25,15 +25,15 @@ struct ClaimAt {
   std::vector<std::uint8_t> value;
 };
 
-/// What a Player may need, and whom it asks.
+/// Options of a Player: what it may need, and whom it asks.
 struct PlayerOptions {
   RecordingLimits limits{};
   /// A recording that was cut is played as far as it goes.
   Ending ending = Ending::mayBeCut;
-  /// Asked after each step, which a seek makes many of; false stops it there. Null for none.
+  /// Function that is asked after each step, which a seek makes many of; false stops it there. Null for none.
   bool (*progress)(std::uint64_t tick, std::uint64_t target, void* data) = nullptr;
   void* data = nullptr;
-  /// Asked far more often, while the bytes are checked and within steps: see Replay.
+  /// Function that is asked far more often, while the bytes are checked and within steps: see Replay.
   Interrupt interrupt{};
 };
 
@@ -81,7 +81,7 @@ class Player {
   PlayerOptions options_;
   Replay<S> replay_;
   std::uint64_t proven_ = 0;
-  bool chained_ = true;  ///< Whether the world came from the proven ones.
+  bool chained_ = true;  ///< True if the world came from the proven ones.
   std::optional<std::uint64_t> wrong_;
 };
 

@@ -74,21 +74,21 @@ class Recorder {
   /// @return the hash of the world
   /// @throws as Space::step; ForeignWorld where checking finds an unrecorded change
   std::uint64_t step();
-  /// For a game that calls Space::step by itself: records the step it has just made.
+  /// Records the step that a game has just made by calling Space::step itself.
   /// @throws ForeignWorld unless exactly one step of the recording's length has been made since the last call
   std::uint64_t stepped();
   /// Says that the first `ticks` steps are final, as once the inputs of all players are there: their bytes
   /// need wait no longer, and no world before them can be restored any more.
   /// @throws ValueOutOfRange for more steps than are recorded
   void confirm(std::uint64_t ticks);
-  /// How many of the last steps can be taken back; at first kDefaultRewindTicks. Bytes of older ones are
+  /// Sets how many of the last steps can be taken back; at first kDefaultRewindTicks. Bytes of older ones are
   /// given to the sink. Fewer than before forgets; more holds from now on.
   /// @throws ValueOutOfRange for more than kMostRewindTicks
   void setRewindTicks(std::uint32_t ticks);
-  /// From now on; see KeyframeBudget for what holds at first.
+  /// Sets the budget from now on; see KeyframeBudget for what holds at first.
   void setKeyframes(const KeyframeBudget& budget);
-  /// Whether what is given to the sink from now on is packed by zstd. Off at first: hashes cannot be packed,
-  /// so it is worth while where commands or keyframes are large.
+  /// Sets whether what is given to the sink from now on is packed by zstd. Off at first: hashes cannot be
+  /// packed, so it is worth while where commands or keyframes are large.
   /// @throws ValueOutOfRange where this build lacks zstd (packingAvailable)
   void setPacking(bool packing);
   /// Puts down what the game says of the world as it is after the last step: a score, a winner, a lap time.
@@ -102,14 +102,14 @@ class Recorder {
   /// @param value  at most 2^16 bytes
   /// @throws ValueOutOfRange
   void note(std::string_view key, std::string_view value);
-  /// Whether apply() and step() look, for the price of one more hash each, if anything changed the world that
-  /// was not recorded. Off at first.
+  /// Sets whether apply() and step() look, for the price of one more hash each, if anything changed the world
+  /// that was not recorded. Off at first.
   void setChecking(bool checking);
   /// Ends the recording after its last step: what was done since is left out. Nothing more can be recorded.
   /// A recording without a step is refused by readers.
   /// @throws ForeignWorld where a world was brought in that is none of the recording's
   void finish();
-  /// The same after the step with this number: what was guessed beyond it is left out, whatever world the
+  /// Finishes after the step with this number: what was guessed beyond it is left out, whatever world the
   /// Space has.
   /// @throws ValueOutOfRange for a step that is not recorded or can no longer be gone back to
   void finish(std::uint64_t ticks);

@@ -14,9 +14,9 @@ namespace samestep {
 // A recording: a world, what happened to it tick by tick, and the hash of the world after every tick. It
 // needs nothing else to be replayed. docs/formats.md tells every byte.
 
-/// What a Recorder writes.
+/// Version that a Recorder writes.
 inline constexpr std::uint32_t kRecordingVersion = 3;
-/// What readers still take.
+/// Oldest version that readers still take.
 inline constexpr std::uint32_t kOldestRecordingVersion = 2;
 
 /// Limits of a claim and of a note: bytes of a key, and of a value.
@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kMaxKeyBytes = 255;
 inline constexpr std::uint32_t kMaxClaimBytes = 4096;
 inline constexpr std::uint32_t kMaxNoteBytes = 1u << 16;
 
-/// What the first bytes of a recording say.
+/// Header of a recording: what its first bytes say.
 struct RecordingInfo {
   std::uint32_t version = 0;
   std::uint32_t revision = 0;  ///< kSimulationRevision of the build that recorded it.
@@ -34,34 +34,34 @@ struct RecordingInfo {
 /// @throws FormatError for what is no recording, and for one of another version
 RecordingInfo recordingInfo(std::span<const std::uint8_t> bytes);
 
-/// How large a recording from outside may be.
+/// Limits of a recording from outside.
 struct RecordingLimits : WorldLimits {
   RecordingLimits() = default;
   RecordingLimits(const WorldLimits& world) : WorldLimits(world) {}
 
-  /// Of the whole recording, and of what is packed in it when it is unpacked. Some hours of a match of a
-  /// dozen players are a tenth of it.
+  /// Bytes of the whole recording, and of what is packed in it when it is unpacked. Some hours of a match of
+  /// a dozen players are a tenth of it.
   std::uint64_t bytes = std::uint64_t{1} << 30;
   /// Between two steps.
   std::uint32_t commandsPerTick = 1u << 16;
-  /// As Space::work counts it, for all of a replay: unlike a limit of seconds, no recording meets it on one
-  /// machine and not on another.
+  /// Work as Space::work counts it, for all of a replay: unlike a limit of seconds, no recording meets it on
+  /// one machine and not on another.
   std::uint64_t work = ~std::uint64_t{0};
 };
 
-/// Whether this build has zstd: it can then pack recordings, and read packed ones.
+/// True if this build has zstd: it can then pack recordings, and read packed ones.
 bool packingAvailable();
 
-/// What stands in a recording after the first world.
+/// Kind of an item in a recording after the first world.
 enum class RecordingItem : std::uint8_t {
   step = 0,     ///< A step was made; its hash.
   command = 1,  ///< Something that was done before the next step.
   end = 2,      ///< Nothing follows.
-  claim = 3,    ///< What the game says about the world as it is after the last step.
+  claim = 3,    ///< The game says something about the world as it is after the last step.
 };
 
-/// What a recording says about a world without proving it: a score, a winner, a lap time. Only the game knows
-/// what a key means; see Wiring::checkClaim.
+/// Claim: what a recording says about a world without proving it, a score, a winner, a lap time. Only the
+/// game knows what a key means; see Wiring::checkClaim.
 struct Claim {
   std::string_view key;
   std::span<const std::uint8_t> value;
@@ -76,13 +76,13 @@ struct Note {
 /// A world within a recording.
 struct Keyframe {
   std::uint64_t tick = 0;    ///< After which it stands.
-  std::uint64_t hash = 0;    ///< Of that world, as recorded.
-  std::uint64_t offset = 0;  ///< Of its section.
-  std::uint64_t bytes = 0;   ///< Of its section.
+  std::uint64_t hash = 0;    ///< Hash of that world, as recorded.
+  std::uint64_t offset = 0;  ///< Offset of its section.
+  std::uint64_t bytes = 0;   ///< Bytes of its section.
   std::uint64_t chain = 0;   ///< The chain before it.
 };
 
-/// What to do with a recording that ends too early, as one of a game that crashed.
+/// Treatment of a recording that ends too early, as one of a game that crashed.
 enum class Ending : std::uint8_t {
   whole,     ///< It is refused.
   mayBeCut,  ///< It is taken up to its last whole tick.
@@ -108,14 +108,14 @@ class RecordingReader {
   S timeStep() const { return timeStep_; }
   /// Steps in the recording.
   std::uint64_t ticks() const { return ticks_; }
-  /// Whether nothing of it is missing; always so where it had to be whole.
+  /// True if nothing of it is missing; always so where it had to be whole.
   bool isWhole() const { return whole_; }
   /// Before the first step.
   const WorldState<S>& initialWorld() const { return world_; }
   std::uint64_t initialHash() const { return initialHash_; }
   /// In their order, the first world first.
   std::span<const Keyframe> keyframes() const { return keyframes_; }
-  /// How many claims there are.
+  /// Number of claims.
   std::uint64_t claims() const { return claims_; }
   /// All of them, in their order.
   std::vector<Note> notes() const;
@@ -124,16 +124,16 @@ class RecordingReader {
   /// before is for a replay to show.
   /// @throws FormatError
   WorldState<S> world(std::size_t keyframe, const WorldLimits& limits = {}) const;
-  /// Whether a keyframe is this world, to the last byte.
+  /// True if a keyframe is this world, to the last byte.
   bool isWorld(std::size_t keyframe, const WorldState<S>& world) const;
   /// Goes to the items after a keyframe.
   void seek(std::size_t keyframe);
 
   /// Reads the next item; once at the end, stays there.
   RecordingItem next();
-  /// What the next item is, where that is a claim; else another item than a claim.
+  /// Kind of the next item, where that is a claim; else another item than a claim.
   bool claimFollows();
-  /// Of the item read last, in the recording; for one in a packed section, that of the section.
+  /// Offset of the item read last, in the recording; for one in a packed section, that of the section.
   std::uint64_t offset() const { return itemOffset_; }
   const Command<S>& command() const { return command_; }
   std::uint64_t hash() const { return hash_; }
@@ -169,15 +169,15 @@ class RecordingReader {
   std::uint64_t claims_ = 0;
   bool whole_ = true;
   std::vector<Keyframe> keyframes_;
-  std::vector<std::uint64_t> notes_;  ///< Where their sections stand.
+  std::vector<std::uint64_t> notes_;  ///< Offsets of their sections.
   std::uint64_t firstSection_ = 0;
-  std::uint64_t usableEnd_ = 0;  ///< Of the sections with items, in the recording.
+  std::uint64_t usableEnd_ = 0;  ///< End of the sections with items, in the recording.
 
   // The section whose items are read: the bytes up to its end, or what it unpacks to.
   bool packed_ = false;
   std::vector<std::uint8_t> unpacked_;
   std::uint64_t sectionAt_ = 0;
-  std::uint64_t sectionEnd_ = 0;  ///< Of its items.
+  std::uint64_t sectionEnd_ = 0;  ///< End of its items.
   std::uint64_t nextSection_ = 0;
   std::uint64_t position_ = 0;
   std::uint64_t itemAt_ = 0;

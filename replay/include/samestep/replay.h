@@ -45,15 +45,16 @@ class Replay {
   void seek(std::uint64_t tick);
   const RecordingReader<S>& reader() const { return reader_; }
 
-  /// Asked about each command before it is applied; false ends the replay there. Null for none.
+  /// Sets the function that is asked about each command before it is applied; false ends the replay there.
+  /// Null for none.
   void setCommandFilter(bool (*filter)(const Command<S>& command, std::uint64_t offset, void* data),
                         void* data) {
     filter_ = filter;
     filterData_ = data;
   }
 
-  /// What was done last before a step, as it stands in the recording. Commands are not kept: a few bytes each
-  /// may tell of any number. They last until the claims or commands after that step are looked at.
+  /// Bytes of what was done last before a step, as it stands in the recording. Commands are not kept: a few
+  /// bytes each may tell of any number. They last until the claims or commands after that step are looked at.
   std::span<const std::uint8_t> commandBytes() const {
     return reader_.items().subspan(static_cast<std::size_t>(commandsBegin_),
                                    static_cast<std::size_t>(commandsEnd_ - commandsBegin_));

@@ -11,19 +11,19 @@
 
 namespace samestep {
 
-/// Where two recordings part.
+/// Place where two recordings part.
 struct ReplayDifference {
   bool worldsDiffer = false;
   /// The first step after which they do, 0 for the worlds before the first; else the steps compared.
   std::uint64_t tick = 0;
-  /// Where in that step: "start", "commands" (before the step itself), or the name of a stage.
+  /// Place in that step: "start", "commands" (before the step itself), or the name of a stage.
   std::string stage;
   /// There, at most as many as asked for.
   std::vector<FieldDifference> fields;
   /// The first step before which different things were done, 0 if there is none up to `tick`.
   std::uint64_t commandTick = 0;
-  /// What was done in one only then, in words, at most a thousand; both empty where only the order differs.
-  /// Commands are compared by all their bytes, the game's own input too.
+  /// Commands that only one of them has then, in words, at most a thousand; both empty where only the order
+  /// differs. Commands are compared by all their bytes, the game's own input too.
   std::vector<std::string> onlyA;
   std::vector<std::string> onlyB;
 };

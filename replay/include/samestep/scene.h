@@ -31,10 +31,10 @@ class SceneError : public std::exception {
 struct SceneSummary {
   std::string name;
   std::string about;
-  std::uint64_t ticks = 600;  ///< How long it is worth watching.
+  std::uint64_t ticks = 600;  ///< Number of ticks it is worth watching.
 };
 
-/// Where the files are that a scene names.
+/// Source of the files that a scene names.
 class SceneFiles {
  public:
   virtual ~SceneFiles() = default;
@@ -77,8 +77,8 @@ class SceneSource {
 /// The scenes that can be found by name, sorted by name, the families with an example number last.
 /// @throws SceneError where a file in the folder of scenes is none
 std::vector<SceneSummary> listScenes();
-/// Where scenes are looked for by name, in this order: the environment's SAMESTEP_SCENES, where the program
-/// was installed, where it was built.
+/// Folders in which scenes are looked for by name, in this order: the environment's SAMESTEP_SCENES, where
+/// the program was installed, where it was built.
 std::vector<std::string> sceneFolders();
 
 /// A scene under way: its world, and the commands that its events turn into.
@@ -103,7 +103,8 @@ class Scene {
   /// with
   ///         the place of a body that no step can move, else with its number
   void step();
-  /// For who applies commands and makes steps by other means: an error of theirs as step would throw it.
+  /// Error of a command or step by other means, as step would throw it: for who applies commands and makes
+  /// steps alone.
   SceneError refused(const Error& error) const;
 
  private:
@@ -113,8 +114,8 @@ class Scene {
         : tick(tickIn), name(nameIn), line(lineIn), command(std::move(commandIn)) {}
     std::uint64_t tick;
     std::uint32_t name;
-    std::uint32_t line;    // Of the scene's file, or of that of its inputs.
-    bool isInput = false;  // Whether it stands there.
+    std::uint32_t line;    // Line in the scene's file, or in that of its inputs.
+    bool isInput = false;  // True if it stands there.
     Command<S> command;
   };
   template <Scalar T>
@@ -125,7 +126,7 @@ class Scene {
   std::vector<Event> events_;
   std::vector<BodyId> names_;
   std::uint64_t next_ = 0;
-  bool commandsDone_ = true;  // Whether all that are due before the coming step were given out.
+  bool commandsDone_ = true;  // True if all that are due before the coming step were given out.
   std::string file_;
   std::string inputsFile_;
   std::optional<SceneError> unsteppable_;  // The first body that is so as it stands in the scene.

@@ -12,23 +12,23 @@
 
 namespace samestep {
 
-/// What replaying a recording showed.
+/// Result of replaying a recording.
 struct VerifyResult {
   bool matches = false;
-  /// Whether options.progress or options.interrupt put an end to it; firstWrongTick then means nothing.
+  /// True if options.progress or options.interrupt put an end to it; firstWrongTick then means nothing.
   bool stopped = false;
   /// Steps in the recording.
   std::uint64_t ticks = 0;
   /// The first step after which the world's hash is not the recorded one; 0 for the world before the first.
   std::uint64_t firstWrongTick = 0;
-  std::uint64_t recordedHash = 0;  ///< For that step, or the last one.
+  std::uint64_t recordedHash = 0;  ///< Hash recorded for that step, or the last one.
   std::uint64_t computedHash = 0;
-  /// What of the expectations is not met, where matches is false for that: "the time step", "the scalar",
+  /// Name of the expectation that is not met, where matches is false for that: "the time step", "the scalar",
   /// "the number of steps", "the step it begins after", "the first world", "a command: position"; else null.
   const char* unexpected = nullptr;
-  /// Of the command that is not allowed.
+  /// Offset of the command that is not allowed.
   std::uint64_t unexpectedOffset = 0;
-  /// Whether it is a keyframe that is not the world after firstWrongTick, though its hash is that.
+  /// True if it is a keyframe that is not the world after firstWrongTick, though its hash is that.
   bool keyframeDiffers = false;
   /// Claims that the game found to hold, found false, and does not know. With a false one, matches is false.
   std::uint64_t claimsThatHold = 0;
@@ -36,18 +36,18 @@ struct VerifyResult {
   std::uint64_t claimsUnknown = 0;
   /// The first one of those.
   std::optional<ClaimAt> falseClaim;
-  /// With VerifyOptions::toTheEnd, the steps whose hash is not the recorded one, and the last of them: where
-  /// it is not the last of all, the worlds agreed again.
+  /// Number of steps, with VerifyOptions::toTheEnd, whose hash is not the recorded one, and the last of them:
+  /// where it is not the last of all, the worlds agreed again.
   std::uint64_t wrongTicks = 0;
   std::uint64_t lastWrongTick = 0;
-  /// Whether the recording was cut, and only as many steps as `ticks` were there; see VerifyOptions::ending.
+  /// True if the recording was cut, and only as many steps as `ticks` were there; see VerifyOptions::ending.
   bool cut = false;
 };
 
-/// What the match was to be, told by whoever gave it out, not by the recording: by itself a recording shows
+/// Expectations of a match, told by whoever gave it out, not by the recording: by itself a recording shows
 /// only that its own hashes follow from its own world and commands. See docs/replays.md.
 struct Expectations {
-  /// Of the world before the first step: its bodies, settings, handlers, all of it.
+  /// Hash of the world before the first step: its bodies, settings, handlers, all of it.
   std::optional<std::uint64_t> firstHash;
   /// The time step is 1 s over it, rounded once.
   std::optional<std::uint32_t> stepsPerSecond;
@@ -62,25 +62,26 @@ struct Expectations {
 /// A day at 60 Hz.
 inline constexpr std::uint64_t kMostFirstTick = 24 * 60 * 60 * 60;
 
-/// How verify goes about it.
+/// Options of verify.
 struct VerifyOptions {
-  /// For recordings from strangers, what the game's own matches need: the pairs bound the memory and the time
-  /// of a step.
+  /// Limits for recordings from strangers, what the game's own matches need: the pairs bound the memory and
+  /// the time of a step.
   RecordingLimits limits{};
   Expectations expected{};
-  /// Whether to go on after a mismatch, to see whether it heals.
+  /// Goes on after a mismatch, to see whether it heals.
   bool toTheEnd = false;
-  /// Whether a recording that ends too early is refused, or replayed as far as it goes.
+  /// Tells whether a recording that ends too early is refused, or replayed as far as it goes.
   Ending ending = Ending::whole;
   /// A recording whose world had made more steps before is refused.
   std::uint64_t mostFirstTick = kMostFirstTick;
-  /// Called after every step; false stops, as for a recording that takes too long. Null for none.
+  /// Function that is called after every step; false stops, as for a recording that takes too long. Null for
+  /// none.
   bool (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
   void* data = nullptr;
-  /// Asked far more often, so that a recording that takes too long ends within a tenth of a second: see
-  /// Replay.
+  /// Function that is asked far more often, so that a recording that takes too long ends within a tenth of a
+  /// second: see Replay.
   Interrupt interrupt{};
-  /// Who helps, with all that can be shared out, and the kernel, which is forced: no result depends on
+  /// Workers that help with all that can be shared out, and the kernel, which is forced: no result depends on
   /// either.
   TaskRunner* workers = nullptr;
   KernelTarget kernel = KernelTarget::best;
@@ -92,7 +93,7 @@ struct VerifyOptions {
 template <Scalar S>
 VerifyResult verify(std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
                     const VerifyOptions& options = {});
-/// The same for a recording of either scalar whose handlers are the named ones.
+/// Verifies a recording of either scalar whose handlers are the named ones.
 /// @throws FormatError also for a scalar that this build lacks
 VerifyResult verify(std::span<const std::uint8_t> bytes, const VerifyOptions& options = {});
 
