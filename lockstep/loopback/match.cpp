@@ -49,7 +49,7 @@ void tell(int pipe, std::span<const std::uint8_t> bytes) {
   }
 }
 
-/// What a process of the same program tells: the report as it is in memory, the words, the recording.
+/// Tells what a process of the same program found: the report as it is in memory, the words, the recording.
 void tellResult(int pipe, const PeerResult& result) {
   std::array<std::uint8_t, sizeof(PeerReport) + 4> head{};
   const auto words = static_cast<std::uint32_t>(result.words.size());

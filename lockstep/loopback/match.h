@@ -19,17 +19,17 @@ struct MatchOptions {
   std::uint8_t window = 8;
   std::uint8_t inputDelay = 2;
   std::uint16_t hashInterval = 30;
-  /// How each peer's datagrams travel to each other one.
+  /// Profile of the links from each peer to each other one.
   netsim::LinkProfile link;
   std::uint64_t seed = 1;
-  /// How fast the peers' clocks run.
+  /// Speed of the peers' clocks.
   std::uint32_t speed = 1;
-  /// Whose world gets one bit changed after which tick; kNoSeat: nobody's.
+  /// Seat whose world gets one bit changed, and after which tick; kNoSeat: nobody's.
   Seat flipSeat = kNoSeat;
   Tick flipTick = 0;
 };
 
-/// How a peer's match went.
+/// Report of a peer's match.
 struct PeerReport {
   EndReason reason = EndReason::none;
   Tick certain = 0;
@@ -40,17 +40,17 @@ struct PeerReport {
   std::uint64_t datagrams = 0;
   std::uint64_t lost = 0;
   std::uint64_t bytes = 0;         ///< Sent, with the seal, IP and UDP.
-  std::uint64_t microseconds = 0;  ///< Of the peer's clock.
+  std::uint64_t microseconds = 0;  ///< Time by the peer's clock.
   std::uint64_t refused = 0;       ///< Datagrams that were no packet of the match.
   bool desynced = false;
 };
 
-/// What a peer leaves behind.
+/// Result that a peer leaves behind.
 struct PeerResult {
   /// False for a process that ended otherwise, or not in time.
   bool ended = false;
   PeerReport report;
-  /// What it wants to say, in lines.
+  /// Words that it wants to say, in lines.
   std::string words;
   std::vector<std::uint8_t> recording;
 };
@@ -59,7 +59,7 @@ struct PeerResult {
 /// @throws std::system_error where there are no sockets or processes
 std::vector<PeerResult> playMatch(const MatchOptions& options);
 
-/// What is wrong with the recordings of a match, in lines: each must verify, and all must be the same.
+/// Says what is wrong with the recordings of a match, in lines: each must verify, and all must be the same.
 std::string compareRecordings(const MatchOptions& options, const std::vector<PeerResult>& peers);
 
 }  // namespace samestep::loopback

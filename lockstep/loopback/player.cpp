@@ -94,7 +94,7 @@ void Player::turn(Time now) {
   next_ = std::max(next_ + kFrame * session_.frameLength() / 1000, now > 10 * kFrame ? now - 10 * kFrame : 0);
 }
 
-/// Whether all that the recording is to hold is certain, and a little more.
+/// True if all that the recording is to hold is certain, and a little more.
 bool Player::over() const { return std::min(session_.confirmed(), session_.tick()) >= options_.ticks; }
 
 void Player::notice() {

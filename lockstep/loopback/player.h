@@ -26,7 +26,7 @@ struct FlippedArena {
   Tick flipTick = 0;
 };
 
-/// Where all peers are, and who they are.
+/// Table of all peers: where and who they are.
 struct Table {
   std::vector<std::unique_ptr<UdpTransport>> sockets;
   std::vector<KeyPair> keys;

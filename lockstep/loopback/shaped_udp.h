@@ -24,7 +24,7 @@ class ShapedUdp {
 
   /// Sends what is due.
   void update(Time now);
-  /// The same as a Transport; it must not outlive this.
+  /// Transport that this is; it must not outlive this.
   Transport transport();
 
   /// Datagrams that were given to this and lost by it, and all their bytes with those of IP and UDP.

@@ -121,7 +121,7 @@ void Match::plan() {
   const auto mayGo = [&] { return static_cast<Seat>(random_.within(1, options_.peers - 1)); };
   const bool leaves = has(kLeave) && random_.perMille(500);
   if (leaves) plan_.push_back({when(), Kind::leave, seat(), 0, 0});
-  // How many of those who vote then may vanish.
+  // So many of those who vote then may vanish.
   std::uint32_t spare = (options_.peers - (leaves ? 2 : 1)) / 2;
   if (has(kCrash) && spare > 0 && random_.perMille(600)) {
     --spare;
@@ -223,7 +223,7 @@ void Match::disturb(Time now) {
   network_.send(kNobody, to, bytes, now);
 }
 
-/// Whether all who still play are sure of the last tick.
+/// True if all who still play are sure of the last tick.
 bool Match::finished() const {
   return std::all_of(peers_.begin(), peers_.end(),
                      [&](const auto& peer) { return !peer->running() || peer->certain() >= options_.ticks; });

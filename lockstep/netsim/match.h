@@ -11,7 +11,7 @@
 
 namespace samestep::netsim {
 
-/// What may go wrong in a match, each from the seed.
+/// Faults that may occur in a match, each from the seed.
 enum Fault : std::uint32_t {
   kLoss = 1,          ///< Bad links: loss in runs, duplicates, bursts, jitter, narrow bandwidth.
   kPartition = 2,     ///< Some peers cannot hear others for a while.
@@ -28,7 +28,7 @@ inline constexpr std::uint32_t kAllFaults = 511;
 std::uint32_t faultNamed(const std::string& name);
 std::string faultNames(std::uint32_t faults);
 
-/// What is broken on purpose, to see that the oracle notices.
+/// Fault planted on purpose, to see that the oracle notices.
 enum class Planted : std::uint8_t {
   none,
   flip,     ///< One bit of one peer's state, once.
@@ -43,8 +43,7 @@ struct MatchOptions {
   std::uint32_t faults = kAllFaults;
   Planted planted = Planted::none;
   std::unique_ptr<SimGame> (*makeGame)() = makeIntegerGame;
-  /// Of each link: the delay in ms, and how many of a hundred datagrams are lost; kBySeed: as the seed has
-  /// it.
+  /// Delay of each link in ms, and how many of a hundred datagrams are lost; kBySeed: as the seed has it.
   static constexpr std::uint32_t kBySeed = 0xffffffffu;
   std::uint32_t delay = kBySeed;
   std::uint32_t loss = kBySeed;
@@ -58,9 +57,9 @@ struct MatchReport {
   Tick desyncTick = 0;
   /// Peers that named the object in which a flip was planted, and who differs from most, bit by seat.
   std::uint32_t named = 0;
-  /// What each peer found out about a desync.
+  /// Findings of each peer about a desync.
   std::vector<std::string> findings;
-  /// What happened in the match, for the record of what seeds cover.
+  /// Events of the match, for the record of what seeds cover.
   std::uint32_t peers = 0;
   std::uint32_t survivors = 0;
   std::uint32_t dropped = 0;
@@ -73,7 +72,7 @@ struct MatchReport {
   std::uint64_t lost = 0;
   std::uint64_t payload = 0;
   std::uint64_t milliseconds = 0;  ///< Virtual.
-  /// Of everything that was certain: equal where runs are.
+  /// Hash of everything that was certain: equal where runs are.
   std::uint64_t trace = 0;
 };
 

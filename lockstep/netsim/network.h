@@ -18,7 +18,7 @@ namespace samestep::netsim {
 /// Microseconds of virtual time.
 using Time = std::uint64_t;
 
-/// How one direction between two peers treats datagrams. Chances are in thousandths.
+/// Treatment of datagrams in one direction between two peers. Chances are in thousandths.
 struct LinkProfile {
   Time delay = 20'000;
   Time jitter = 0;  ///< Added to the delay, evenly spread: datagrams overtake each other.
@@ -80,7 +80,7 @@ class Network {
   Random random_;
   std::vector<Link> links_;
   std::vector<std::deque<Datagram>> inboxes_;
-  /// By time of arrival, then in the order in which they were sent.
+  /// Datagrams by time of arrival, then in the order in which they were sent.
   std::map<std::pair<Time, std::uint64_t>, Travelling> travelling_;
   std::uint64_t sent_ = 0;
   std::uint64_t lost_ = 0;

@@ -26,10 +26,10 @@ Tick firstDrop(const Peer& reference) {
   return first;
 }
 
-/// By then each detector has compared hashes, and told.
+/// Each detector has compared hashes, and told, after so many ticks.
 constexpr Tick kSeen = 120;
 
-/// Whether two peers had other states after each of so many steps: some faults heal.
+/// True if two peers had other states after each of so many steps: some faults heal.
 bool differFor(const Peer& a, const Peer& b, Tick from, Tick ticks) {
   if (std::min(a.certain(), b.certain()) < from + ticks) return false;
   Tick tick = from + 1;
@@ -43,7 +43,7 @@ std::string nameOf(Tick seat) { return "peer " + std::to_string(seat); }
 
 void Oracle::violate(const std::string& text) { report_.violations.push_back(text); }
 
-/// What is certain is the same everywhere.
+/// Requires that what is certain is the same everywhere.
 void Oracle::states(const Oracle::Peers& peers, const Peer& reference) {
   const Tick agreed = firstDrop(reference);
   for (Seat seat = 0; seat < peers.size(); ++seat) {
@@ -60,7 +60,7 @@ void Oracle::states(const Oracle::Peers& peers, const Peer& reference) {
   }
 }
 
-/// What players did arrived, once, in its order, and nothing else.
+/// Requires that what players did arrived, once, in its order, and nothing else.
 void Oracle::inputs(const Oracle::Peers& peers, const Peer& reference) {
   for (Seat seat = 0; seat < peers.size(); ++seat) {
     std::uint32_t held = 0;
@@ -101,7 +101,7 @@ void Oracle::detector(const MatchOptions& options, const Oracle::Peers& peers, S
     const DesyncReport* found = peers[seat]->session().desync();
     if (found == nullptr) continue;
     report_.findings.push_back(nameOf(seat) + ": " + desyncText(*found));
-    // Of two, neither is most.
+    // Neither is most, where there are two.
     const std::uint32_t guilty = peers.size() > 2 ? 1u << plantedSeat : 0;
     const bool named = std::string(found->ours.object) == peers[seat]->flipped() && found->minority == guilty;
     if (named) report_.named |= 1u << seat;
@@ -175,7 +175,7 @@ MatchReport Oracle::judge(const MatchOptions& options, const Oracle::Peers& peer
   }
   endings(peers);
   if (reference == nullptr) {
-    // Of two, one may leave and the other be gone.
+    // One of two may leave and the other be gone.
     if (report_.left == 0 && excused_ == 0) violate("nobody is left");
     return report_;
   }

@@ -14,7 +14,7 @@
 
 namespace samestep::netsim {
 
-/// What a peer's game saw of a tick when it made that step last.
+/// Record of what a peer's game saw of a tick when it made that step last.
 struct TickRecord {
   std::uint64_t inputs = 0;  ///< A digest of all inputs.
   std::uint64_t state = 0;   ///< The game's hash after the step.

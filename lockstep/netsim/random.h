@@ -16,7 +16,7 @@ class Random {
   std::uint32_t below(std::uint32_t bound) {
     return static_cast<std::uint32_t>((next() >> 32) * bound >> 32);
   }
-  /// From `least` to `most`, both included.
+  /// Random number from `least` to `most`, both included.
   std::uint32_t within(std::uint32_t least, std::uint32_t most) { return least + below(most - least + 1); }
   /// True so many times in a thousand.
   bool perMille(std::uint32_t chance) { return below(1000) < chance; }

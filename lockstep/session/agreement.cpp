@@ -36,12 +36,12 @@ View getView(PacketReader& reader) {
 
 }  // namespace
 
-/// Whether a seat was heard of late, and its inputs are not what is waited for.
+/// True if a seat was heard of late, and its inputs are not what is waited for.
 bool Session::Impl::delivers(Seat seat, std::uint64_t within) const {
   return !remote(seat) || (now - links[seat].lastHeard <= within && now - links[seat].lastInput <= within);
 }
 
-/// Whether a view of others names only seats that vote now.
+/// True if a view of others names only seats that vote now.
 bool Session::Impl::withinVoters(const View& view) const {
   return ((view.voters | view.dropped) & ~change.voters()) == 0;
 }
@@ -199,7 +199,7 @@ void Session::Impl::receiveCommit(Seat seat, PacketReader& reader) {
   if (!reader.done()) return bad();
   if (number != viewNumber + 1) return;
   if (!withinVoters(view)) return bad();
-  // Whoever stays has accepted what is decided; others believe as many as may decide.
+  // A peer that stays has accepted what is decided; others believe as many as may decide.
   const bool accepted = change.acceptedBallot() != 0 && change.accepted() == view;
   if (accepted || vouched(seat, view)) return decide(view);
   bad();
@@ -215,7 +215,7 @@ bool Session::Impl::vouched(Seat seat, const View& view) {
   return quorum(same, change.voters());
 }
 
-/// Whether all inputs of those to be dropped are here; asks the others for what is not.
+/// Tells whether all inputs of those to be dropped are here; asks the others for what is not.
 bool Session::Impl::haveAll(const View& view) {
   bool all = true;
   for (Seat seat = 0; seat < settings.players; ++seat) {
@@ -233,7 +233,7 @@ void Session::Impl::decide(const View& view) {
   const SeatMask known = static_cast<SeatMask>(change.voters() | view.voters);
   change.begin(view.voters);
   vouchedFor.fill({});
-  // What was frozen may come now.
+  // Inputs that were frozen may come now.
   for (Link& link : links) link.lastInput = now;
   changeSince = 0;
   proposedAt = 0;
@@ -256,7 +256,7 @@ void Session::Impl::drop(Seat seat, Tick end) {
   seatEnds(seat, end, SessionEvent::Kind::dropped);
 }
 
-/// From `end` on the seat is absent.
+/// Makes the seat absent from `end` on.
 void Session::Impl::seatEnds(Seat seat, Tick end, SessionEvent::Kind kind) {
   ends[seat] = end;
   // Steps have been made with what it was predicted to hold.

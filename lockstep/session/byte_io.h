@@ -29,7 +29,7 @@ class PacketWriter {
     if (to != nullptr && !source.empty()) std::memcpy(to, source.data(), source.size());
   }
 
-  /// Whether everything fitted.
+  /// True if everything fitted.
   bool good() const { return good_; }
   std::uint32_t size() const { return size_; }
   std::uint32_t left() const { return static_cast<std::uint32_t>(into_.size()) - size_; }
@@ -91,7 +91,7 @@ class PacketReader {
   }
 
   bool good() const { return good_; }
-  /// Whether nothing was missing and nothing is left over.
+  /// True if nothing was missing and nothing is left over.
   bool done() const { return good_ && left() == 0; }
   std::uint32_t left() const { return static_cast<std::uint32_t>(bytes_.size()) - offset_; }
   std::uint32_t offset() const { return offset_; }

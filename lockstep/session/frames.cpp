@@ -63,7 +63,7 @@ bool Session::Impl::complete(Tick tick) const {
 
 /// Counts the steps whose inputs are all known.
 void Session::Impl::confirm() {
-  // What is to be stepped must not be pushed out of the streams.
+  // Inputs that are to be stepped must not be pushed out of the streams.
   while (certain < current + 2 * kMaxLead && complete(certain)) ++certain;
 }
 
@@ -188,7 +188,7 @@ void Session::Impl::publishHashes() {
 }
 
 void Session::Impl::compareHash(Seat seat, Tick tick) {
-  // Who was dropped may have gone on alone.
+  // A peer that was dropped may have gone on alone.
   if (ends[seat] < tick) return;
   const KeptHash& ours = hashes[settings.localSeat].of(tick, settings.hashInterval);
   const KeptHash& theirs = hashes[seat].of(tick, settings.hashInterval);
@@ -201,7 +201,7 @@ void Session::Impl::compareHash(Seat seat, Tick tick) {
     desynced |= bit(seat);
     beginLocating(seat, tick);
   }
-  // Who differs shows when all have told.
+  // The minority shows when all have told.
   if (report.first == tick) report.minority = minorityAt(tick);
 }
 

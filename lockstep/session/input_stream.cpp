@@ -10,7 +10,8 @@
 namespace samestep::lockstep {
 namespace {
 
-/// What the low two bits of a run's tag say; the number above them is the run's length or that of its bytes.
+/// Meaning of the low two bits of a run's tag; the number above them is the run's length or that of its
+/// bytes.
 enum Run : std::uint8_t {
   /// So many inputs that hold what the one before held; none of them: an input that holds as many bytes as
   /// the one before, with a bit for each that is another, and these.
@@ -41,7 +42,7 @@ std::uint8_t maskOf(std::span<const std::uint8_t> held, std::span<const std::uin
   return mask;
 }
 
-/// Whether few enough bytes changed for a mask to be shorter.
+/// True if few enough bytes changed for a mask to be shorter.
 bool masked(std::span<const std::uint8_t> held, std::span<const std::uint8_t> before) {
   if (held.size() != before.size() || held.size() > kMostMasked) return false;
   return static_cast<std::size_t>(std::popcount(maskOf(held, before))) + 1 < held.size();
@@ -183,7 +184,8 @@ Tick encodeEntries(PacketWriter& writer, const InputStream& stream, Tick from, T
 }
 
 bool decodeEntries(PacketReader& reader, InputStream& stream, Tick base, Tick limit, Tick& wrong) {
-  // What a later packet has said already needs no reading, and what it is told relative to may be forgotten.
+  // Inputs that a later packet has said already need no reading, and what they are told relative to may be
+  // forgotten.
   if (base > stream.end() || base < stream.first() || (base > stream.first() && !stream.has(base - 1))) {
     return true;
   }

@@ -12,7 +12,8 @@
 
 namespace samestep::lockstep {
 
-/// What a player tells the session itself, in the order of its inputs. All peers obey it at the same tick.
+/// Control inputs: what a player tells the session itself, in the order of its inputs. All peers obey it at
+/// the same tick.
 enum class Control : std::uint8_t {
   none = 0,
   leave = 1,  ///< This is the player's last input.
@@ -40,7 +41,7 @@ class InputStream {
   bool has(Tick tick) const { return tick >= first_ && tick < end_ && tick + kCapacity >= end_; }
   /// The input of a tick that it has.
   InputEntry at(Tick tick) const;
-  /// What was held last before a tick; empty before the first and where it is too long ago.
+  /// Input that was held last before a tick; empty before the first and where it is too long ago.
   std::span<const std::uint8_t> heldBefore(Tick tick) const;
   /// Takes the input of the tick end().
   /// @return false if a step was made with another one
@@ -50,7 +51,7 @@ class InputStream {
 
   /// Notes what a step of `tick` was made with, until its input comes.
   void predict(Tick tick, std::span<const std::uint8_t> held);
-  /// What predict noted last for the tick.
+  /// Input that predict noted last for the tick.
   std::span<const std::uint8_t> predicted(Tick tick) const;
 
   std::uint32_t maxHeld() const { return maxHeld_; }
@@ -73,7 +74,7 @@ class InputStream {
   Tick first_ = 0;
   Tick end_ = 0;
   std::vector<Record> records_;
-  /// Of each record: held, predicted, commands.
+  /// Bytes of each record: held, predicted, commands.
   std::vector<std::uint8_t> bytes_;
 };
 

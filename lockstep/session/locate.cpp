@@ -17,7 +17,7 @@ constexpr std::uint64_t kAnswerEvery = 5'000;
 /// A peer that does not answer for so long is asked no more.
 constexpr std::uint64_t kAskFor = 5'000'000;
 
-/// How many values a part of a level has.
+/// Number of values that a part of a level has.
 std::uint64_t valuesOf(std::uint8_t level) { return std::uint64_t{1} << (6 * level); }
 
 void putText(PacketWriter& writer, const char* text) {
@@ -31,7 +31,7 @@ void getText(PacketReader& reader, char (&into)[kSize]) {
   const auto bytes = reader.bytes(reader.u8());
   const std::size_t length = std::min(bytes.size(), kSize - 1);
   for (std::size_t i = 0; i < length; ++i) {
-    // From outside: what is no plain text is not shown.
+    // Text from outside that is no plain text is not shown.
     const bool plain = bytes[i] >= 32 && bytes[i] < 127;
     into[i] = plain ? static_cast<char>(bytes[i]) : '?';
   }
@@ -57,7 +57,7 @@ void Session::Impl::keepState() {
   game.save(kSaveSlots + place, game.data);
 }
 
-/// Whether the state after so many steps is kept and certain.
+/// True if the state after so many steps is kept and certain.
 bool Session::Impl::keeps(Tick tick) const {
   const bool kept = tick != kNever && locating.kept[tick / keepInterval() % kKeepSlots] == tick;
   return kept && tick <= std::min(certain, current) && wrong >= tick;
@@ -85,7 +85,7 @@ Tick Session::Impl::keptFrom(Tick tick) const {
   return found;
 }
 
-/// Of the values of one part of a level.
+/// Hash of the values of one part of a level.
 std::uint64_t Session::Impl::hashOfPart(std::uint8_t level, std::uint64_t part) const {
   const std::uint64_t all = locating.hashes.size();
   const std::uint64_t from = std::min(part * valuesOf(level), all);
@@ -204,7 +204,7 @@ void Session::Impl::receiveAnswer(Seat seat, PacketReader& reader) {
   locating.askedAt = 0;
 }
 
-/// Who told another hash for a tick than most did; nobody where none is told by more than half.
+/// Seats that told another hash for a tick than most did; none where none is told by more than half.
 Session::Impl::SeatMask Session::Impl::minorityAt(Tick tick) {
   SeatMask told = 0;
   for (Seat seat = 0; seat < settings.players; ++seat) {

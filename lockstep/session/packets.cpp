@@ -30,7 +30,7 @@ Tick unwrap(std::uint16_t low, Tick near) {
 void Session::Impl::poll(std::uint64_t time) {
   const std::uint64_t gap = std::max(now, time) - now;
   now += gap;
-  // Whoever was not looking cannot say that the others were silent.
+  // A peer that was not looking cannot say that the others were silent.
   if (gap > settings.interruptedAfter) {
     for (Link& link : links) {
       link.lastHeard += gap;
@@ -63,7 +63,7 @@ void Session::Impl::finishLeaving() {
   if (endsAt == 0) endsAt = now + settings.endAfter;
   bool known = (change.voters() & bit(self)) == 0 || live() == 0;
   for (Seat seat = 0; seat < settings.players; ++seat) {
-    // Who has left as well may have all and be gone, or still lack our last input.
+    // A peer that has left as well may have all and be gone, or still lack our last input.
     const bool dropped = (change.voters() & bit(seat)) == 0;
     const bool gone = ends[seat] != kNever && now - links[seat].lastHeard > settings.goneAfter;
     if (remote(seat)) known &= dropped || gone || links[seat].acked >= own().end();
@@ -102,7 +102,7 @@ void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
     sendCommit(seat, viewNumber - static_cast<std::uint32_t>(behind) + 1);
   }
   if (type == Packet::commit) return receiveCommit(seat, reader);
-  // What the seat said before it was dropped has its place in the decision.
+  // Inputs that the seat gave before it was dropped have their place in the decision.
   if (ends[seat] != kNever && (change.voters() & bit(seat)) == 0) return;
   link.lastHeard = now;
   // Ballots of another decision mean nothing here.
@@ -218,7 +218,7 @@ void Session::Impl::sendInputs(Seat seat) {
   writer.u8(static_cast<std::uint8_t>(current - link.acked));
   const std::int32_t lag = std::clamp(link.lagHere / 128, -64, 63) + 64;
   writer.u8(static_cast<std::uint8_t>(lag | (paused ? kPaused : 0)));
-  // Whoever goes on without saying that ours came cannot be told them for ever.
+  // A peer that goes on without saying that ours came cannot be told them for ever.
   if (own().has(link.acked)) encodeEntries(writer, own(), link.acked, own().end());
   send(seat, writer);
 }
@@ -349,7 +349,7 @@ void Session::Impl::watchLinks() {
       if (link.lastSent == 0 || now - link.lastSent >= kHelloEvery) sendHello(seat);
       continue;
     }
-    // Whoever waits for others has made the input of the step that all wait for.
+    // A peer that waits for others has made the input of the step that all wait for.
     const bool grows = streams[seat].end() != link.endSeen;
     link.endSeen = streams[seat].end();
     const bool rests = link.paused && now - link.pausedSince < settings.pausedAtMost;

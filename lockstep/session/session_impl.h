@@ -18,17 +18,17 @@ namespace lockstep {
 
 /// The first byte of every packet, in its low four bits; the others are the sender's seat.
 enum class Packet : std::uint8_t {
-  hello = 0,    ///< What must be the same everywhere, and whom the sender has heard.
-  refuse = 1,   ///< Why the sender will not play with the receiver.
+  hello = 0,    ///< Settings that must be the same everywhere, and whom the sender has heard.
+  refuse = 1,   ///< Reason why the sender will not play with the receiver.
   inputs = 2,   ///< Inputs the receiver lacks, and how many of its own have come.
-  prepare = 3,  ///< Who shall be dropped? See ViewChange.
+  prepare = 3,  ///< Ballot: who shall be dropped?
   promise = 4,
   accept = 5,
   accepted = 6,
   commit = 7,    ///< A decision.
   want = 8,      ///< Asks for inputs of a dropped player.
   backfill = 9,  ///< Answers with them.
-  hashes = 10,   ///< Of certain states.
+  hashes = 10,   ///< Hashes of certain states.
   ask = 11,      ///< After a desync: asks for the hashes of the parts of a part of a state.
   answer = 12,
 };
@@ -37,13 +37,13 @@ inline constexpr Tick kNever = 0xffffffffu;
 /// No input is made for a tick further ahead of the last certain one.
 inline constexpr Tick kMaxLead = kMaxWindow + kMaxInputDelay;
 static_assert(8 * kMaxLead <= InputStream::kCapacity, "a stream keeps what any peer may still ask for");
-/// What is remembered of decisions and of hashes.
+/// Number of decisions and of hashes that are remembered.
 inline constexpr std::uint32_t kKeptViews = 2 * kMaxPlayers;
 inline constexpr std::uint32_t kKeptHashes = 16;
 inline constexpr std::uint32_t kKeptEvents = 64;
 inline constexpr std::uint32_t kKeptCommands = 32;
 
-/// What is known of another peer.
+/// Link to another peer.
 struct Link {
   bool heard = false;    ///< Its hello came and is as ours.
   bool hearsUs = false;  ///< It has said that ours came.
@@ -52,16 +52,16 @@ struct Link {
   std::uint64_t lastHeard = 0;
   /// When we last had no need to wait for its next input.
   std::uint64_t lastInput = 0;
-  Tick endSeen = 0;  ///< Of its inputs, at the last look.
+  Tick endSeen = 0;  ///< End of its inputs, at the last look.
   std::uint64_t pausedSince = 0;
   std::uint64_t lastSent = 0;
   std::uint64_t lastCommit = 0;
   std::uint64_t lastAnswered = 0;
-  /// Of our inputs: the tick after the last one that it has.
+  /// End of our inputs that it has: the tick after the last one.
   Tick acked = 0;
   /// Its newest known step.
   Tick tick = 0;
-  /// By how many ticks it is behind here, and we there, in 256ths, smoothed.
+  /// Ticks by which it is behind here, and we there, in 256ths, smoothed.
   std::int32_t lagHere = 0;
   std::int32_t lagThere = 0;
 };
@@ -88,7 +88,7 @@ struct Locating {
   Locating() { kept.fill(kNever); }
   std::array<Tick, kKeepSlots> kept;
   Tick pinned = kNever;               ///< Is not replaced any more.
-  std::vector<std::uint64_t> hashes;  ///< Of the values of the pinned state.
+  std::vector<std::uint64_t> hashes;  ///< Hashes of the values of the pinned state.
   bool asking = false;
   bool done = false;
   Seat seat = kNoSeat;
@@ -191,7 +191,7 @@ struct Session::Impl {
   void seatEnds(Seat seat, Tick end, SessionEvent::Kind kind);
   void finish(EndReason why);
   void tell(const SessionEvent& event);
-  /// Who has not ended as far as known.
+  /// Seats that have not ended as far as known.
   SeatMask live() const;
   bool remote(Seat seat) const { return seat != settings.localSeat; }
   lockstep::InputStream& own() { return streams[settings.localSeat]; }
@@ -210,7 +210,7 @@ struct Session::Impl {
   std::array<Link, kMaxPlayers> links{};
   /// The tick after each seat's last input, as far as known.
   std::array<Tick, kMaxPlayers> ends{};
-  /// Of each seat: the tick after the last input that was looked at for a control.
+  /// Tick of each seat after the last input that was looked at for a control.
   std::array<Tick, kMaxPlayers> controlsUpTo{};
   /// Dropped seats whose inputs up to these ticks are still to come from others.
   SeatMask incomplete = 0;
@@ -230,15 +230,15 @@ struct Session::Impl {
   std::uint32_t viewNumber = 0;
   lockstep::ViewChange change;
   std::array<lockstep::View, lockstep::kKeptViews> views;
-  /// What each seat told was decided as the next view.
+  /// View that each seat told was decided as the next.
   std::array<lockstep::View, kMaxPlayers> vouchedFor{};
   std::uint64_t changeSince = 0;  ///< When a change became needed; 0: is not.
   std::uint64_t proposedAt = 0;
   std::uint64_t askedAt = 0;
   std::uint64_t wantedAt = 0;
 
-  lockstep::HashLog ownHashes;                        ///< Also of steps that are not certain.
-  std::array<lockstep::HashLog, kMaxPlayers> hashes;  ///< As told by each seat; ours when certain.
+  lockstep::HashLog ownHashes;                        ///< Hashes of our steps, also uncertain ones.
+  std::array<lockstep::HashLog, kMaxPlayers> hashes;  ///< Hashes told by each seat; ours when certain.
   Tick hashesUpTo = 0;
   SeatMask desynced = 0;
   lockstep::Locating locating;

@@ -50,7 +50,7 @@ struct SyncTest::Impl {
   std::array<std::uint64_t, kRing> hashes{};
 };
 
-/// Whether the state is another one than the first time after so many steps.
+/// True if the state is another one than the first time after so many steps.
 bool SyncTest::Impl::differs(Tick after) {
   const std::uint64_t hash = game.hash(game.data);
   bool other = hash != hashes[after % kRing];

@@ -22,7 +22,7 @@ struct View {
   friend bool operator==(const View&, const View&) = default;
 };
 
-/// Whether some of the voters may decide: more than half, or half of them with the lowest seat. Any two such
+/// True if some of the voters may decide: more than half, or half of them with the lowest seat. Any two such
 /// sets share a voter.
 bool quorum(SeatMask some, SeatMask voters);
 
@@ -44,29 +44,29 @@ class ViewChange {
   /// Begins the decision after the one that made these the voters.
   void begin(SeatMask voters);
   SeatMask voters() const { return voters_; }
-  /// Whose inputs are not taken until it is decided.
+  /// Seats whose inputs are not taken until it is decided.
   SeatMask frozen() const { return frozen_; }
   bool underWay() const { return promised_ != 0; }
 
-  // As acceptor.
+  // These are the acceptor's part.
   bool promise(std::uint32_t ballot, SeatMask dropped);
   bool accept(std::uint32_t ballot, const View& view);
   std::uint32_t promised() const { return promised_; }
   std::uint32_t acceptedBallot() const { return acceptedBallot_; }
   const View& accepted() const { return accepted_; }
 
-  // As proposer.
+  // These are the proposer's part.
   /// Starts a ballot above all heard of.
   void propose(Seat self, SeatMask stay, SeatMask dropped);
   std::uint32_t ballot() const { return ballot_; }
   SeatMask dropped() const { return dropped_; }
   bool proposing() const { return ballot_ != 0; }
-  /// Whether all have promised, so that value() is asked to be accepted.
+  /// True if all have promised, so that value() is asked to be accepted.
   bool asking() const { return ballot_ != 0 && (stay_ & ~promises_) == 0 && quorum(promises_, voters_); }
   /// Gives up the ballot for a higher one.
   void yield() { ballot_ = 0; }
   const View& value() const { return value_; }
-  /// Who is still to answer.
+  /// Seats that are still to answer.
   SeatMask missing() const;
   void promisedBy(Seat seat, const Promise& promise);
   /// @return true when it is decided

@@ -15,7 +15,7 @@ using lockstep::PacketWriter;
 
 namespace {
 
-/// Whether bytes from outside were taken by an action on them. A build without exceptions ends where they are
+/// True if bytes from outside were taken by an action on them. A build without exceptions ends where they are
 /// refused.
 template <class Action>
 bool isTaken(Action&& action) {
@@ -34,13 +34,13 @@ bool isTaken(Action&& action) {
 
 /// The first byte of a packet.
 enum class Kind : std::uint8_t {
-  have = 0x61,    ///< What who watches has: a state, how many blocks of it, inputs up to where.
+  have = 0x61,    ///< A spectator says what it has: a state, how many blocks of it, inputs up to where.
   block = 0x62,   ///< A piece of a state.
   inputs = 0x63,  ///< Inputs of some ticks.
 };
 constexpr Tick kNone = 0xffffffffu;
 constexpr std::uint32_t kBlock = 1024;
-/// How many ticks the host remembers.
+/// Number of ticks the host remembers.
 constexpr Tick kLog = 1024;
 /// A state older than this is not sent to who comes.
 constexpr Tick kFresh = 300;
@@ -49,7 +49,7 @@ constexpr std::uint32_t kMostCatchUp = 8;
 constexpr int kMostReceived = 256;
 constexpr std::uint64_t kGone = 5'000'000;
 constexpr std::uint64_t kAnswerEvery = 10'000;
-/// Of one who watches, known inputs that were not shown yet.
+/// Number of known inputs of a spectator that were not shown yet, at most.
 constexpr Tick kAhead = 1024;
 
 void require(bool condition, const char* text) { samestep::require<Fault::ValueOutOfRange>(condition, text); }
@@ -80,7 +80,7 @@ struct SpectatorHost::Impl {
   std::array<Watcher, kMostSpectators> watchers{};
   Tick stateTick = kNone;
   std::vector<std::uint8_t> state;
-  Tick first = 0;  ///< Of the log.
+  Tick first = 0;  ///< First tick of the log.
   Tick logged = 0;
   std::vector<std::vector<std::uint8_t>> entries;
 };
@@ -97,7 +97,7 @@ void SpectatorHost::Impl::keepInputs() {
   }
 }
 
-/// Whether there is a state from which the log goes on.
+/// Tells whether there is a state from which the log goes on.
 bool SpectatorHost::Impl::takeState() {
   const bool fresh = stateTick != kNone && stateTick >= first && logged - stateTick < kFresh;
   if (fresh) return true;
@@ -132,7 +132,7 @@ void SpectatorHost::Impl::receive(Address from, std::span<const std::uint8_t> by
   watcher->lastHeard = now;
   if (watcher->lastAnswered != 0 && now - watcher->lastAnswered < kAnswerEvery) return;
   watcher->lastAnswered = now;
-  // Who has no state, one that is not sent any more, or is behind the log, begins anew.
+  // A spectator that has no state, one that is not sent any more, or is behind the log, begins anew.
   const bool whole = next != kNone;
   if (whole && next >= first) return sendInputs(from, next);
   const bool same = has == stateTick && stateTick != kNone && stateTick >= first;
@@ -220,7 +220,7 @@ struct Spectator::Impl {
   std::uint64_t askedAt = 0;
   std::uint64_t lastHeard = 0;
   Tick stateTick = kNone;
-  std::uint32_t blocks = 0;  ///< That have come, in their order.
+  std::uint32_t blocks = 0;  ///< Blocks that have come, in their order.
   std::vector<std::uint8_t> bytes;
   Tick tick = 0;
   Tick known = 0;

@@ -15,7 +15,7 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint32_t kTag = crypto_aead_chacha20poly1305_ietf_ABYTES;
 constexpr std::uint32_t kMac = 16;
-// Where the parts of a hello begin.
+// These are the places at which the parts of a hello begin.
 constexpr std::uint32_t kFresh = 2;
 constexpr std::uint32_t kLasting = kFresh + 32;
 constexpr std::uint32_t kNumber = kLasting + 32 + kTag;

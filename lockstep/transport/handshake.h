@@ -12,7 +12,7 @@ namespace samestep {
 
 using Key = std::array<std::uint8_t, 32>;
 
-/// What kind a datagram is, its first byte.
+/// Kind of a datagram, its first byte.
 enum class SealedKind : std::uint8_t { hello = 0x51, answer = 0x52, sealed = 0x53 };
 
 /// The keys that two peers agreed on, one for each direction.
@@ -44,7 +44,7 @@ inline constexpr std::uint32_t kHelloBytes = 128;
 /// | 16 | hash of all that with the match's key |
 inline constexpr std::uint32_t kAnswerBytes = 69;
 
-/// Whether a hello or answer was made with the match's key; costs one hash.
+/// True if a hello or answer was made with the match's key; costs one hash.
 bool madeWith(const MatchKey& match, std::span<const std::uint8_t> datagram);
 
 /// The caller's side of a key agreement.
@@ -52,7 +52,7 @@ class Call {
  public:
   Call(const KeyPair& own, const PublicKey& peer, const MatchKey& match, std::uint16_t number);
   ~Call();
-  /// The same bytes each time it is sent.
+  /// Bytes of the hello: the same each time it is sent.
   std::span<const std::uint8_t> hello() const { return hello_; }
   struct Answered {
     ConnectionKeys keys;

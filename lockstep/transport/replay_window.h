@@ -6,7 +6,7 @@
 
 namespace samestep {
 
-/// Which numbers of datagrams were received: the last kSize of them by a bit each, older ones count as
+/// Numbers of datagrams that were received: the last kSize of them by a bit each, older ones count as
 /// received.
 class ReplayWindow {
  public:

@@ -40,7 +40,7 @@ struct Connection {
   std::uint16_t peerNumber = 0;
   bool heard = false;  ///< The peer has sent something sealed.
   std::uint64_t sent = 0;
-  std::uint64_t order = 0;  ///< Of coming into being.
+  std::uint64_t order = 0;  ///< Number of connections that came into being before it.
   ConnectionKeys keys{};
   ReplayWindow window{};
   PublicKey callerFresh{};
@@ -291,7 +291,7 @@ struct SealedTransport::Impl {
     return length;
   }
 
-  /// What is true once a datagram of a connection was opened: the peer is there, at that address.
+  /// Notes what is true once a datagram of a connection was opened: the peer is there, at that address.
   void hear(std::uint32_t index, Address from) {
     Peer& peer = peers[index / kConnectionsOfPeer];
     connections[index].heard = true;

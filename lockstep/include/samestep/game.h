@@ -16,27 +16,27 @@ inline constexpr Seat kMaxPlayers = 16;
 inline constexpr Seat kNoSeat = 0xff;
 /// The longest prediction window, ticks.
 inline constexpr std::uint8_t kMaxWindow = 16;
-/// How many states a game keeps.
+/// Number of states a game keeps.
 inline constexpr std::uint32_t kSaveSlots = kMaxWindow + 2;
 /// And so many more, with the numbers from kSaveSlots on, if it can tell its values.
 inline constexpr std::uint32_t kKeepSlots = 4;
 
-/// What one player does in one tick.
+/// Input of one player in one tick.
 ///
 /// A game must not ask whether an input was predicted: the session alone knows, and repeats the step with the
 /// true one where it was wrong.
 struct PlayerInput {
   /// False before the player has joined and after it has left or was dropped.
   bool present = false;
-  /// What is held: buttons, sticks. Predicted while the true one is on its way. At most
-  /// SessionSettings::maxHeldBytes.
+  /// Buttons and sticks that are held: predicted while the true ones are on their way. Predicted while the
+  /// true one is on its way. At most SessionSettings::maxHeldBytes.
   std::span<const std::uint8_t> held;
-  /// What happens once, as a menu choice or a chat line: never predicted, never lost, never applied twice. At
-  /// most SessionSettings::maxCommandBytes.
+  /// Commands happen once, as a menu choice or a chat line: never predicted, never lost, never applied twice.
+  /// At most SessionSettings::maxCommandBytes.
   std::span<const std::uint8_t> commands;
 };
 
-/// What all players do in one tick, by seat.
+/// Inputs of all players in one tick, by seat.
 struct TickInputs {
   Tick tick = 0;
   std::span<const PlayerInput> players;
@@ -72,10 +72,10 @@ struct Game {
   /// A number that differs where two states differ; the same on every machine.
   std::uint64_t (*hash)(void* data) = nullptr;
 
-  /// For SyncTest, and may be null: names the first thing in which two kept states differ, cut to fit `text`.
+  /// Names for SyncTest, and may be null, the first thing in which two kept states differ, cut to fit `text`.
   /// @return whether they differ
   bool (*difference)(std::uint32_t slotA, std::uint32_t slotB, std::span<char> text, void* data) = nullptr;
-  /// For a Session to find what differs after a desync; both may be null. All values of a kept state in an
+  /// Lists for a Session what differs after a desync; both may be null. All values of a kept state in an
   /// order of their own, each as a number that goes by its name and value.
   /// @return how many there are; with room for all of them, they are written
   std::uint32_t (*valueHashes)(std::uint32_t slot, std::span<std::uint64_t> into, void* data) = nullptr;

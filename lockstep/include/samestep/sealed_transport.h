@@ -15,7 +15,8 @@ struct PublicKey {
   friend bool operator==(const PublicKey&, const PublicKey&) = default;
 };
 
-/// Who a peer is. The lobby hands public keys round; the secret one never leaves its peer.
+/// Keys of a peer: they say who it is. The lobby hands public keys round; the secret one never leaves its
+/// peer.
 struct KeyPair {
   PublicKey publicKey{};
   std::array<std::uint8_t, 32> secretKey{};
@@ -32,13 +33,13 @@ struct MatchKey {
   std::array<std::uint8_t, 32> bytes{};
 };
 
-/// How many datagrams were dropped since the start, by reason. Drops are silent on the wire.
+/// Number of datagrams dropped since the start, by reason. Drops are silent on the wire.
 struct SealCounters {
   std::uint64_t malformed = 0;  ///< A length or kind that no peer sends.
   std::uint64_t forged = 0;     ///< Not made with the keys of the match or of the peer.
-  std::uint64_t strangers = 0;  ///< Made with the match's key by a peer that was not let in.
+  std::uint64_t strangers = 0;  ///< Datagrams made with the match's key by a peer that was not let in.
   std::uint64_t replayed = 0;   ///< Received before, or too old to tell.
-  std::uint64_t unknown = 0;    ///< For a connection that does not exist (any more).
+  std::uint64_t unknown = 0;    ///< Datagrams for a connection that does not exist (any more).
   std::uint64_t unsent = 0;     ///< Not sent, as there is no connection to that peer yet.
 };
 
@@ -57,7 +58,7 @@ class SealedTransport {
   static constexpr std::uint32_t kMaxPayload = kMaxDatagram - kSealBytes;
   static_assert(kMaxPayload >= kMaxPacket, "a session's packets fit");
   static constexpr std::uint32_t kMaxPeers = 64;
-  /// Whether a peer that is not known, but has the match's key, is let in.
+  /// Function that tells whether a peer that is not known, but has the match's key, is let in.
   using Admission = bool (*)(const PublicKey& peer, void* data);
 
   /// @param below  what carries the sealed datagrams; it must outlive this
@@ -84,12 +85,12 @@ class SealedTransport {
   void send(Address peer, std::span<const std::uint8_t> bytes);
   /// The next datagram of a peer. @return its length, or 0 if there is none
   std::uint32_t receive(Address& from, std::span<std::uint8_t> into);
-  /// The same as a Transport; it must not outlive this.
+  /// Transport that this is; it must not outlive this.
   Transport transport();
 
-  /// Whether keys have been agreed on with the peer.
+  /// True if keys have been agreed on with the peer.
   bool connected(Address peer) const;
-  /// Who a peer is; all zeros for a name that is not in use.
+  /// Public key of a peer; all zeros for a name that is not in use.
   PublicKey keyOf(Address peer) const;
   const SealCounters& counters() const;
 

@@ -10,15 +10,15 @@
 
 namespace samestep {
 
-/// Which steps of the present are saved, to be gone back to.
+/// Steps of the present that are saved, to be gone back to.
 enum class Saving : std::uint8_t {
   everyStep,  ///< Each one that is not certain yet: a rollback repeats no more than it must.
   sparse,     ///< The last certain one only: for games whose saves cost more than their steps.
 };
 
-/// What a player that was not heard yet is taken to hold.
+/// Guess of the input of a player that was not heard yet.
 enum class Prediction : std::uint8_t {
-  repeatLast,  ///< What it held last.
+  repeatLast,  ///< The player is taken to hold what it held last.
   nothing,
 };
 
@@ -28,9 +28,9 @@ struct SessionSettings {
   /// Seats taken at the start, 2 to 16, and which of them is ours.
   std::uint8_t players = 2;
   Seat localSeat = 0;
-  /// Where the transport finds each seat.
+  /// Address of each seat in the transport.
   Address addresses[kMaxPlayers] = {};
-  /// How many steps may be made ahead of the last certain one, 0 to kMaxWindow. 0: pure lockstep, which
+  /// Number of steps that may be made ahead of the last certain one, 0 to kMaxWindow. 0: pure lockstep, which
   /// neither predicts nor saves.
   std::uint8_t window = 8;
   /// Ticks between an input and the step that uses it, 0 to kMaxInputDelay.
@@ -68,12 +68,12 @@ inline constexpr std::uint8_t kMaxRunAhead = 4;
 enum class SessionState : std::uint8_t {
   connecting,  ///< Some peers were not heard yet.
   running,
-  ended,  ///< For good; endReason() says why.
+  ended,  ///< The session is over for good; endReason() says why.
 };
 
 enum class EndReason : std::uint8_t {
   none,
-  left,      ///< By leave().
+  left,      ///< The seat went by leave().
   refused,   ///< A peer has another build, game or settings.
   dropped,   ///< The others went on without us.
   minority,  ///< Most players are gone, and might play on together.
@@ -91,9 +91,9 @@ struct SessionEvent {
     paused,       ///< `seat` said that it pauses.
     unpaused,
     left,     ///< `seat` has its last input at the tick before `tick`.
-    dropped,  ///< The same, agreed by the others.
+    dropped,  ///< The seat went, agreed by the others.
     desync,   ///< The states after `tick` steps differ: `local` here, `remote` at `seat`.
-    located,  ///< What differs has been found: Session::desync().
+    located,  ///< The difference has been found: Session::desync().
     ended,
   };
   Kind kind = Kind::started;
@@ -127,16 +127,16 @@ std::string desyncText(const DesyncReport& report);
 /// In what two peers differ that want to play together.
 enum class Mismatch : std::uint8_t { none, protocol, players, settings, revision, fingerprint, content };
 
-/// What came of a frame.
+/// Result of a frame.
 enum class Frame : std::uint8_t {
   advanced,  ///< A step was made.
-  waiting,   ///< For the inputs of others: show the last one again.
+  waiting,   ///< The inputs of others are waited for: show the last one again.
   paused,
   idle,  ///< Not running.
 };
 
 struct SessionStats {
-  std::uint64_t steps = 0;  ///< Made, repeated ones included.
+  std::uint64_t steps = 0;  ///< Steps made, repeated ones included.
   std::uint64_t rollbacks = 0;
   std::uint64_t saves = 0;
   std::uint32_t deepest = 0;    ///< Rollback, in steps.
@@ -177,7 +177,7 @@ class Session {
 
   /// Leaves the match with the next input; poll until the state is ended.
   void leave();
-  /// While paused, no inputs are made: all others wait.
+  /// Pauses: no inputs are made meanwhile, and all others wait.
   void pause(bool paused);
   /// @throws ValueOutOfRange; from the next frame on. All may change at any time, and differ between peers.
   void setInputDelay(std::uint8_t ticks);
@@ -200,13 +200,13 @@ class Session {
   bool certainState(Tick& tick, std::uint32_t& slot) const;
   /// Bit by seat: who plays now.
   std::uint16_t present() const;
-  /// How long a frame should last, in thousandths of the usual: over 1000 for who is ahead of the others.
+  /// Length that a frame should have, in thousandths of the usual: over 1000 for who is ahead of the others.
   /// Stays within 950 to 1050.
   std::uint32_t frameLength() const;
   /// Takes the oldest event. 64 are kept.
   bool next(SessionEvent& event);
-  /// What was found out about a desync so far: null where there was none; its values are empty before the
-  /// event `located`, and for a game without Game::value.
+  /// Report of a desync so far: null where there was none; its values are empty before the event `located`,
+  /// and for a game without Game::value.
   const DesyncReport* desync() const;
   const SessionStats& stats() const;
 

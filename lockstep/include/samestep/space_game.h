@@ -12,7 +12,8 @@
 
 namespace samestep {
 
-/// What a game keeps beside its Space: scores, timers, random numbers. `data` is handed to each function.
+/// State that a game keeps beside its Space: scores, timers, random numbers. `data` is handed to each
+/// function.
 struct OwnState {
   void* data = nullptr;
   void (*save)(std::uint32_t slot, void* data) = nullptr;
@@ -62,8 +63,8 @@ class SpaceGame {
   /// then verifies with wiring().
   /// @throws ValueOutOfRange where it is not recorded, or has no such step any more
   void finishRecording(Tick ticks);
-  /// What a Replay of the recording needs: it applies the inputs by this game's function and data, which must
-  /// outlive it.
+  /// Wiring that a Replay of the recording needs: it applies the inputs by this game's function and data,
+  /// which must outlive it.
   Wiring<S> wiring() const;
 
  private:

@@ -30,7 +30,7 @@ class SpectatorHost {
 
   /// Takes in what the session is certain of and answers who watches.
   void update(std::uint64_t now);
-  /// Who has asked for something in the last five seconds.
+  /// Spectators that have asked for something in the last five seconds.
   std::uint32_t watching() const;
   /// Datagrams that were no questions, or came from more than kMostSpectators.
   std::uint64_t refused() const;

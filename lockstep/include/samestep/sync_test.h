@@ -23,7 +23,7 @@ class SyncTest {
     Tick tick = 0;
     std::uint64_t first = 0;  ///< The hash after it.
     std::uint64_t again = 0;
-    /// What differs, by Game::difference; empty where the game cannot tell.
+    /// Name of what differs, by Game::difference; empty where the game cannot tell.
     char text[256] = {};
   };
 

@@ -6,7 +6,7 @@
 
 namespace samestep {
 
-/// Who a transport sends to and receives from: a number that the transport gives to each peer.
+/// Address of a peer: a number that the transport gives to each.
 using Address = std::uint64_t;
 
 /// The longest datagram, so that none is cut into pieces on its way.

@@ -33,7 +33,7 @@ class UdpTransport {
   void send(Address to, std::span<const std::uint8_t> bytes);
   /// The next datagram. @return its length, or 0 if there is none
   std::uint32_t receive(Address& from, std::span<std::uint8_t> into);
-  /// The same as a Transport; it must not outlive this.
+  /// Transport that this is; it must not outlive this.
   Transport transport();
   /// Waits until a datagram arrives or a time has passed.
   void wait(std::uint32_t milliseconds) const;
