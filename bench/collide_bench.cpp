@@ -33,7 +33,7 @@ enum class Kind {
   degenerate
 };
 
-/// How two shapes stand: the second at `place`, turned by `angle`, on the first at `firstPlace`.
+/// Stand of two shapes: the second at `place`, turned by `angle`, on the first at `firstPlace`.
 struct Stand {
   Vector<double> place;
   double angle = 0;

@@ -53,7 +53,7 @@ struct Inputs {
   alignas(64) std::array<S, kCount> a, b, c, d, e, f, g, h;
 };
 
-/// Where an operation takes its arguments from.
+/// Domain from which an operation takes its arguments.
 enum class Domain { signedHundred, positive, exponent };
 
 template <class S>

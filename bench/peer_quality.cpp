@@ -46,7 +46,7 @@ Point normalOf(const std::vector<Point>& points, std::size_t i) {
   return Point{edge.y, -edge.x} * (1 / length(edge));
 }
 
-/// How far a point is from a polygon, negative inside.
+/// Distance of a point from a polygon, negative inside.
 double distance(const std::vector<Point>& polygon, Point p) {
   double inside = -kInfinity;
   double nearest = kInfinity;
@@ -71,7 +71,7 @@ double faceSeparation(const std::vector<Point>& a, const std::vector<Point>& b) 
   return greatest;
 }
 
-/// By separating axes; exact where shapes overlap, and then negative.
+/// Separation by separating axes; exact where shapes overlap, and then negative.
 double separation(const Placed& a, const Placed& b) {
   if (a.isCircle() && b.isCircle()) return length(a.points[0] - b.points[0]) - a.radius - b.radius;
   if (a.isCircle()) return distance(b.points, a.points[0]) - a.radius;
@@ -128,7 +128,7 @@ double maxPenetration(std::vector<Placed> shapes) {
   return deepest;
 }
 
-/// Of a shape of density 1, about its centre.
+/// Mass of a shape of density 1, about its centre.
 struct Mass {
   double mass = 0, moment = 0;
   Point center;
@@ -153,7 +153,7 @@ Mass massOf(const SceneShape& shape) {
   return total;
 }
 
-/// What bodies may not pass: the shapes of bodies that are not dynamic.
+/// Walls that bodies may not pass: the shapes of bodies that are not dynamic.
 class Walls {
  public:
   Walls(const PeerScene& scene, const std::vector<Motion>& motions, const std::vector<Placed>& placed) {

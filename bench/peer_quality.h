@@ -7,11 +7,11 @@
 
 namespace samestep::bench {
 
-/// How good a result is, computed in double from the bodies' motions alone, the same way for every engine.
+/// Quality of a result, computed in double from the bodies' motions alone, the same way for every engine.
 struct Quality {
-  double apexDrop = 0;        ///< How far the last body is below where it began, m.
+  double apexDrop = 0;        ///< Distance of the last body below where it began, m.
   double maxPenetration = 0;  ///< Deepest overlap of two shapes of which one is on a dynamic body, m.
-  double kineticEnergy = 0;   ///< Of the dynamic bodies, J.
+  double kineticEnergy = 0;   ///< Energy of the dynamic bodies, J.
   double pileY = 0;           ///< Height of the dynamic bodies' common centre of mass, m.
   int throughWalls = 0;       ///< Dynamic bodies with their centre in or beyond a wall or floor.
   int turned = 0;             ///< Dynamic bodies turned by more than 0.2 rad since the beginning.

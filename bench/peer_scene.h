@@ -8,8 +8,8 @@ namespace samestep::bench {
 
 /// One shape of a scene file, numbers as they are written there.
 struct SceneShape {
-  int body = 0;      ///< Counted from 0 without gaps, in rising order.
-  std::string type;  ///< Of the body: static, kinematic or dynamic.
+  int body = 0;      ///< Body of the shape, counted from 0 without gaps, in rising order.
+  std::string type;  ///< Type of the body: static, kinematic or dynamic.
   std::string x, y, angle, vx, vy, w;
   std::string shape;  ///< circle or polygon.
   std::string radius;

@@ -11,8 +11,8 @@
 
 namespace samestep::bench {
 
-/// Where a body is and how it moves: its origin in m, its angle in rad, the velocity of its centre of mass in
-/// m/s, its angular velocity in rad/s.
+/// Motion of a body: its origin in m, its angle in rad, the velocity of its centre of mass in m/s, its
+/// angular velocity in rad/s.
 struct Motion {
   double x, y, angle, vx, vy, w;
 };
@@ -23,11 +23,11 @@ class World {
   virtual ~World() = default;
   /// One step of 1/60 s.
   virtual void step() = 0;
-  /// Of all bodies, in the order of the scene.
+  /// Motions of all bodies, in the order of the scene.
   virtual std::vector<Motion> motions() const = 0;
 };
 
-/// How Samestep solves contacts.
+/// Choice of how Samestep solves contacts.
 struct SolverChoice {
   bool soft = false;
   bool fast = false;  ///< The soft step at fast precision.

@@ -38,10 +38,10 @@ struct Plan {
   std::string csv, details;
 };
 
-/// What was found of one engine in one scene.
+/// Findings about one engine in one scene.
 struct Cell {
   std::vector<double> ms;      ///< Per step, by round.
-  std::vector<double> ratios;  ///< To the reference in the same round.
+  std::vector<double> ratios;  ///< Ratios to the reference in the same round.
   Quality quality;
   std::optional<long long> bytes;
 };
@@ -63,7 +63,7 @@ double median(std::vector<double> values) {
 void measure(const Plan& plan, const std::string& engine, const PeerScene& scene, Cell& cell) {
   const std::unique_ptr<World> world = makeWorld(engine, scene);
   for (int i = 0; i < plan.warmUp; ++i) world->step();
-  // What other threads do is no part of the thread's own time.
+  // The thread's own time has no part of what other threads do.
   const clockid_t clock = plan.wall ? CLOCK_MONOTONIC : CLOCK_THREAD_CPUTIME_ID;
   const double start = seconds(clock);
   for (int i = 0; i < plan.timed; ++i) world->step();

@@ -50,7 +50,7 @@ void changeField(std::uint8_t* data, std::size_t size, Dice& dice) {
   const std::size_t width = kWidths[dice.below(4)];
   if (size < width) return;
   const std::size_t at = dice.below(size - width + 1);
-  // From elsewhere, or its own value changed.
+  // The word comes from elsewhere, or is its own value changed.
   const std::size_t from = dice.below(4) == 0 ? dice.below(size - width + 1) : at;
   const std::uint64_t value = load(data + from, width);
   store(data + at, width, from == at ? changedField(value, dice) : value);

@@ -22,7 +22,7 @@ struct ShapePlan {
   Vector<Fixed> previous, next;
 };
 
-/// Where it stands. Turns are whole quarters, exact in every scalar, or an angle.
+/// Pose of a shape. Turns are whole quarters, exact in every scalar, or an angle.
 struct PosePlan {
   Vector<Fixed> position;
   int quarters = 0;
@@ -56,7 +56,7 @@ std::optional<Shape<S>> build(const ShapePlan& plan);
 /// the business of the target `hull`.
 void resolve(ShapePlan& plan);
 
-/// Of the farthest point of a shape from its body, at most, m.
+/// Arm of the farthest point of a shape from its body, at most, m.
 double armOf(const ShapePlan& plan);
 /// The largest number that places a shape, m: it rounds the vertices, even where they come to lie at the
 /// origin.

@@ -18,10 +18,10 @@ namespace {
 struct Case {
   ShapePlan shapeA, shapeB;
   PosePlan poseA, poseB;
-  bool same = false;  ///< Whether B is the same shape as A.
+  bool same = false;  ///< True if B is the same shape as A.
   Fixed margin{};
   CollisionId start = 0;
-  std::uint64_t choice = 0;  ///< Which of the dearer checks are made.
+  std::uint64_t choice = 0;  ///< Choice of the dearer checks that are made.
 };
 Case current;
 
@@ -47,7 +47,7 @@ bool chosen(Choice what) {
     case Choice::plain:
       return (bits >> 16 & 15) == 0;
     case Choice::rational:
-      // Of those in double one in 128: of all one in 256.
+      // One in 128 is checked of those in double, one in 256 of all.
       return (bits >> 9 & 0x7f) == 0;
   }
   return false;
@@ -87,15 +87,15 @@ void describe() {
 /// Faces that lie 2^-20 m flat on each other count as one: collide takes the first shape's. It compares them
 /// by places cut to 2^-22 m, which for two faces adds up to as much again.
 constexpr double kFlat = 0x1p-19;
-/// Where the Minkowski difference is thinner than this part of its size, double makes no promise.
+/// Ratio below which double makes no promise: the thickness of the Minkowski difference to its size.
 constexpr double kThin = 0x1p-20;
-/// Nor where an edge is shorter than this part.
+/// Ratio of an edge to the size below which it makes none either.
 constexpr double kDust = 0x1p-30;
 
 template <Scalar S>
 struct Bounds {
-  double place;  ///< Of any point or length that collide answers with, m.
-  double flat;   ///< By how much the axis may be worse than the best one, m.
+  double place;  ///< Error of any point or length that collide answers with, m.
+  double flat;   ///< Amount by which the axis may be worse than the best one, m.
 };
 
 template <Scalar S>
@@ -133,8 +133,8 @@ CollisionInfo<S> touch(const PlacedShape<S>& a, const PlacedShape<S>& b, Collisi
   return collide(a, b, start, &stats, as<S>(current.margin));
 }
 
-/// How far across the normal the edges lie that the points are found on: near 0 for a needle that points at
-/// the other shape.
+/// Width across the normal of the edges that the points are found on: near 0 for a needle that points at the
+/// other shape.
 template <Scalar S>
 double width(const Cores<S>& cores, const CollisionInfo<S>& info) {
   if (info.count == 0) return 1;
@@ -146,7 +146,7 @@ constexpr double kNeedle = 0x1p-10;
 /// Ends of edges that lie opposite each other to this, in metres across the normal, count as meeting.
 constexpr double kMeet = 16 * 0x1p-32;
 
-/// What holds for every answer, whatever the features are.
+/// Checks what holds for every answer, whatever the features are.
 template <Scalar S>
 void checkAnswer(const Cores<S>& cores, const BruteAnswer& brute, const PlacedShape<S>& a,
                  const PlacedShape<S>& b, const CollisionInfo<S>& info) {
@@ -173,10 +173,10 @@ void checkAnswer(const Cores<S>& cores, const BruteAnswer& brute, const PlacedSh
   expectAtMost(along - brute.distance, bounds.place, "the normal separates no more than is possible");
   const double depth = least(info);
   expectAtMost(along - radii, depth + bounds.place, "no point is deeper than the shapes overlap");
-  // Of two nearly parallel faces the one that the deepest vertex is not above may win.
+  // The face that the deepest vertex is not above may win, of two that are nearly parallel.
   const bool parallel =
       brute.bestFace > -1e300 && brute.lead <= 2 * bounds.place + 2 * bounds.flat + cores.size * 0x1p-20;
-  // Nor is the tip of a needle that points at the other shape always one of the points.
+  // The tip of a needle that points at the other shape is not always one of the points either.
   const double across = width(cores, info);
   if (!parallel && across > kNeedle && gaveUp == 0) {
     expectNear(depth, along - radii, bounds.place / across + 2 * bounds.flat,
@@ -211,10 +211,10 @@ bool sameTouch(const CollisionInfo<S>& a, const CollisionInfo<S>& b, bool featur
   return true;
 }
 
-/// Whether two vertices lie hardly farther apart than the places that faces are searched by: which of them is
+/// True if two vertices lie hardly farther apart than the places that faces are searched by: which of them is
 /// the nearest, is then a matter of rounding.
 bool isDust(const Cores<Fixed>& cores) { return cores.doubled || cores.shortest < 0x1p-16; }
-/// Whether more than two vertices of a core are farthest along a direction, but for what is cut off from the
+/// True if more than two vertices of a core are farthest along a direction, but for what is cut off from the
 /// places that faces are searched by: which two of them make the edge towards the other shape, is then a
 /// matter of rounding.
 bool isFlatTowards(const Vector<Fixed>* points, int count, const Vector<Fixed>& direction) {
@@ -226,7 +226,7 @@ bool isFlatTowards(const Vector<Fixed>* points, int count, const Vector<Fixed>& 
   for (int i = 0; i < count; ++i) farthest += along(i) >= most - kCut ? 1 : 0;
   return farthest > 2;
 }
-/// Whether a shape is a segment that points along the normal, nearly: rounding then decides which side is
+/// True if a shape is a segment that points along the normal, nearly: rounding then decides which side is
 /// towards the other shape.
 bool hasNoSide(const PlacedShape<Fixed>& shape, const Vector<Fixed>& normal) {
   if (shape.type != ShapeType::segment) return false;
@@ -235,7 +235,7 @@ bool hasNoSide(const PlacedShape<Fixed>& shape, const Vector<Fixed>& normal) {
          std::max(16 * 0x1p-32, 0x1p-20 * static_cast<double>(length(edge)));
 }
 
-/// Whether the ends of two facing edges that make a point lie opposite each other to some units: rounding
+/// True if the ends of two facing edges that make a point lie opposite each other to some units: rounding
 /// then decides which of them the point is at.
 bool endsMeet(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b, const CollisionInfo<Fixed>& info) {
   if (a.type == ShapeType::circle || b.type == ShapeType::circle) return false;
@@ -260,7 +260,7 @@ bool nearTouch(const CollisionInfo<Fixed>& a, const CollisionInfo<Fixed>& b, dou
   return true;
 }
 
-/// Without the points that lie so near the end of the reach that rounding may leave them out; one at least
+/// Leaves out the points that lie so near the end of the reach that rounding may leave them out; one at least
 /// stays.
 CollisionInfo<Fixed> withoutMarginal(CollisionInfo<Fixed> info, double bound) {
   for (int i = info.count - 1; i >= 0 && info.count > 1; --i) {
@@ -272,8 +272,9 @@ CollisionInfo<Fixed> withoutMarginal(CollisionInfo<Fixed> info, double bound) {
   return info;
 }
 
-/// Where an edge lies across the normal, which side of it counts depends on the order: the names may differ.
-/// Two points come in the other order, but for shapes of two types, which are always searched in one order.
+/// Exchanges the shapes; where an edge lies across the normal, which side of it counts depends on the order:
+/// the names may differ. Two points come in the other order, but for shapes of two types, which are always
+/// searched in one order.
 template <Scalar S>
 CollisionInfo<S> exchanged(const CollisionInfo<S>& info, bool sameType) {
   CollisionInfo<S> result = info;
@@ -313,7 +314,7 @@ struct Scene {
   }
 };
 
-/// The same question without anything prepared.
+/// Asks the question without anything prepared.
 void checkPlain(Scene<Fixed>& scene, const Transform<Fixed>& poseA, const Transform<Fixed>& poseB,
                 const CollisionInfo<Fixed>& info) {
   expect(boundingBox(*scene.shapeA, poseA) == (*scene.a).box, "the box of a shape is that of the placed one");
@@ -381,7 +382,7 @@ void snap(Scene<Fixed>& scene, std::uint64_t how) {
   if (within(moved, Fixed(kMaxNumber))) current.poseB.position = moved;
 }
 
-/// What exchanging two shapes of which one feature wins makes of their answer.
+/// Checks what exchanging two shapes of which one feature wins makes of their answer.
 void checkExchanged(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b,
                     const CollisionInfo<Fixed>& found, const CollisionInfo<Fixed>& turned,
                     const Cores<Fixed>& cores, const BruteAnswer& brute, const Bounds<Fixed>& bounds) {
@@ -391,7 +392,7 @@ void checkExchanged(const PlacedShape<Fixed>& a, const PlacedShape<Fixed>& b,
   // A face's own normal and that of the nearest features, which count apart and beside dust, differ by their
   // rounding.
   const double turnedBy = brute.distance < 0 && !isDust(cores) ? 0 : 0x1p-29;
-  // From one end to the other it is farther along an edge that is not quite across the normal.
+  // The way from one end to the other is longer along an edge that is not quite across the normal.
   const double between = (bounds.place + kMeet) / width(cores, found);
   expect(back.count == info.count || isDust(cores), "exchanging the shapes keeps the count");
   expectAtMost(std::fabs(static_cast<double>(back.normal.x - info.normal.x)) +
@@ -436,7 +437,7 @@ void run(Input& input, std::uint64_t choice) {
 
   if (chosen(Choice::plain)) checkPlain(scene, poseA, poseB, info);
 
-  // Where one feature wins by more than what rounding may decide, everything else is exact.
+  // Everything else is exact where one feature wins by more than what rounding may decide.
   const double reach = static_cast<double>(a.radius + b.radius + current.margin);
   const bool decided = !hasNeighbors() && !gaveUp && width(cores, info) > kNeedle &&
                        std::fabs(brute.distance - reach) > bounds.place + 2 * bounds.flat &&
@@ -483,7 +484,7 @@ void run(Input& input, std::uint64_t choice) {
 
   if (info.count == 0) return;
   if (chosen(Choice::out) && decided) {
-    // Out along the normal by the depth.
+    // The point goes out along the normal by the depth.
     const double depth = least(info);
     const Vector<Fixed> out = info.normal * Fixed(-depth);
     Transform<Fixed> poseOut = poseB;

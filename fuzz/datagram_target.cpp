@@ -20,7 +20,7 @@ namespace {
 
 using Span = std::span<const std::uint8_t>;
 
-/// Written back, they are the same bytes.
+/// Reads the inputs of a tick: written back, they are the same bytes.
 void inputsOfATick(Span bytes) {
   std::array<PlayerInput, kMaxPlayers> players;
   try {
@@ -49,7 +49,7 @@ void inputsOfAPacket(Span bytes) {
   }
 }
 
-/// What a transport sends and is given.
+/// Wire of a transport: what it sends and is given.
 struct Wire {
   std::vector<std::uint8_t> arrives;
   std::size_t longest = 0;

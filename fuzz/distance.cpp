@@ -59,10 +59,10 @@ void eachEdge(const Vector<S>* points, int count, Visit&& visit) {
 template <Scalar S>
 struct FaceTrial {
   BruteAnswer& answer;
-  double size;  ///< Of the pair, m.
-  double unit;  ///< By how much rounding may have moved a vertex, m.
+  double size;  ///< Size of the pair, m.
+  double unit;  ///< Distance by which rounding may have moved a vertex, m.
   double bestDoubt = 0;
-  double farthest = -1e300;  ///< That any face may be.
+  double farthest = -1e300;  ///< Distance of the farthest face, at most.
 
   void tryAll(const Vector<S>* points, int count, const Vector<S>* others, int otherCount);
 };
@@ -77,7 +77,7 @@ void FaceTrial<S>::tryAll(const Vector<S>* points, int count, const Vector<S>* o
     Product<S> most = 0;
     for (int i = 0; i < count; ++i) most = std::max(most, crossOf(points[i] - from, edge));
     const double length = lengthOf(edge), apart = squareMetres<S>(least - most) / length;
-    // Where rounding may have turned the edge, the face may be as far as that.
+    // The face may be so far where rounding may have turned the edge.
     const double doubt = size * std::min(1.0, unit / length);
     if (apart > answer.bestFace) {
       answer.lead = apart - doubt - std::max(answer.bestFace, farthest);
@@ -118,7 +118,7 @@ void tryVertices(const Vector<S>* points, int count, const Vector<S>* others, in
   }
 }
 
-/// Whether vertices go round an area counter-clockwise, once, without a dent.
+/// True if vertices go round an area counter-clockwise, once, without a dent.
 bool isConvex(const Vector<Fixed>* points, int count) {
   bool area = false;
   for (int i = 1; i < count; ++i) {
@@ -196,7 +196,7 @@ BruteAnswer bruteDistance(const Cores<S>& cores, double limit) {
   answer.distance = answer.bestFace;
   // A dent leaves faces in line of which the hull knows only one.
   if (cores.dented) answer.lead = 0;
-  // Without area between them, the cores may be apart along a line that no face is across.
+  // Cores without area between them may be apart along a line that no face is across.
   const bool flat = cores.countA <= 2 && cores.countB <= 2;
   const bool noFaces = answer.bestFace == -1e300;
   if (!noFaces && (answer.bestFace > limit || answer.bestFace < 0 || (answer.bestFace == 0 && !flat))) {
@@ -236,7 +236,7 @@ double widthTowards(const Vector<S>* points, int count, const Vector<S>& directi
   return width;
 }
 
-/// How far points reach across an edge, times its length.
+/// Reach of points across an edge, times its length.
 template <Scalar S>
 double areaAcross(const Vector<S>* points, int count, const Vector<S>& edge) {
   Product<S> low = crossOf(points[0], edge), high = low;

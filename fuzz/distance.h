@@ -17,21 +17,21 @@ struct Cores {
   int countA = 0, countB = 0;
   Vector<S> a[kMaxPolyVertices], b[kMaxPolyVertices];
   Vector<S> origin;  ///< A's first vertex in the world.
-  double size = 0;   ///< Of both cores and the way between them, m: what an error of a direction is worth.
+  double size = 0;   ///< Size of both cores and the way between them, m: worth of an error of a direction.
   double shortest = 1e300;        ///< Edge of either core that has a length, m.
-  bool doubled = false;           ///< Whether rounding has left an edge no length.
-  bool dented = false;            ///< Whether a core is the hull of a polygon that is none itself.
-  double reach = 0;               ///< Of the farthest vertex from the world's origin, m.
-  mutable double narrowest = -1;  ///< What leastWidth found; negative: not asked yet.
+  bool doubled = false;           ///< True if rounding has left an edge no length.
+  bool dented = false;            ///< True if a core is the hull of a polygon that is none itself.
+  double reach = 0;               ///< Distance of the farthest vertex from the world's origin, m.
+  mutable double narrowest = -1;  ///< Width that leastWidth found; negative: not asked yet.
 
   Cores(const PlacedShape<S>& first, const PlacedShape<S>& second);
 };
 
-/// What trying every edge and vertex of two convex cores finds.
+/// Answer of trying every edge and vertex of two convex cores.
 struct BruteAnswer {
   double distance = 0;       ///< Metres, negative where they overlap; a lower bound beyond the limit.
-  double bestFace = -1e300;  ///< Of all faces, how far it is from the other core.
-  double lead = 1e300;       ///< By how much that face beats all others.
+  double bestFace = -1e300;  ///< Distance from the other core of the face that has most.
+  double lead = 1e300;       ///< Lead of that face over all others.
   bool corners = false;      ///< Apart, and two vertices are nearest.
 };
 
@@ -59,11 +59,11 @@ double thickness(const Cores<S>& cores);
 template <Scalar S>
 double leastWidth(const Cores<S>& cores);
 
-/// How far a point, relative to the same origin, lies outside of a convex core.
+/// Distance of a point, relative to the same origin, outside of a convex core.
 template <Scalar S>
 double distanceToCore(const Vector<S>* points, int count, const Vector<S>& p);
 
-/// Whether a distance is that of the cores to within a tolerance, decided in rational numbers.
+/// True if a distance is that of the cores to within a tolerance, decided in rational numbers.
 template <Scalar S>
 bool nearExactDistance(const Cores<S>& cores, double distance, double tolerance);
 

@@ -32,7 +32,7 @@ void describe() {
                static_cast<long long>(c));
 }
 
-/// To nearest, ties to even; floor division by 2^32.
+/// Rounds to nearest, ties to even; floor division by 2^32.
 Int128 roundedShift(Int128 value) {
   const Int128 floor = value >> 32;
   const auto rest = static_cast<std::uint64_t>(value) & 0xffffffffu;
@@ -59,7 +59,7 @@ std::int64_t quotient(Int128 n, Int128 d) {
 
 Extended number(std::int64_t raw) { return static_cast<Extended>(raw) * 0x1p-32L; }
 
-/// Whether raw is within 1 unit of the last place of an exact value known to 64 bits, or saturated like it.
+/// True if raw is within 1 unit of the last place of an exact value known to 64 bits, or saturated like it.
 bool withinUnit(std::int64_t raw, Extended exact) {
   const Extended units = exact * 0x1p32L;
   if (units >= static_cast<Extended>(kMost)) return raw >= kMost - 1;
@@ -93,7 +93,7 @@ void checkArithmetic() {
   }
 }
 
-/// Which operations CheckedFixed reports.
+/// Number of operations that CheckedFixed reported.
 int reports = 0;
 
 void checkChecked() {
@@ -117,7 +117,7 @@ void checkFunctions() {
   const Fixed x = Fixed::fromRaw(a), y = Fixed::fromRaw(b);
   if (a >= 0) {
     const auto root = static_cast<Unsigned128>(static_cast<std::uint64_t>(sqrt(x).raw()));
-    // To nearest: (root - 1/2)^2 <= a 2^32 <= (root + 1/2)^2, times 4.
+    // The root is to nearest: (root - 1/2)^2 <= a 2^32 <= (root + 1/2)^2, times 4.
     const auto value = static_cast<Unsigned128>(static_cast<std::uint64_t>(a)) << 34;
     expect(root == 0 || (2 * root - 1) * (2 * root - 1) <= value, "sqrt is not too large");
     expect((2 * root + 1) * (2 * root + 1) >= value, "sqrt is not too small");
@@ -195,7 +195,7 @@ void checkText(std::string_view text) {
   expect(parseDecimal(std::string_view(written), back) == DecimalStatus::ok, "what is written can be read");
   expect(back == x, "a number reads back the same");
 
-  // Whatever the text is: a number that is the same when written and read again, or untouched.
+  // Any text gives a number that is the same when written and read again, or leaves it untouched.
   Fixed number(77);
   if (parseDecimal(text, number) == DecimalStatus::ok) {
     Fixed again;

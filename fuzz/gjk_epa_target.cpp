@@ -15,7 +15,7 @@ namespace {
 struct Case {
   ShapePlan shapeA, shapeB;
   PosePlan poseA, poseB;
-  bool same = false;  ///< Whether B is the same shape as A.
+  bool same = false;  ///< True if B is the same shape as A.
   Vector<Fixed> axis;
   std::uint32_t start = 0;
 };
@@ -28,9 +28,9 @@ void describe() {
                static_cast<double>(current.axis.y), current.start);
 }
 
-/// Where the Minkowski difference is thinner than this part of its size, double makes no promise.
+/// Ratio below which double makes no promise: the thickness of the Minkowski difference to its size.
 constexpr double kThin = 0x1p-20;
-/// Nor where an edge is shorter than this part.
+/// Ratio of an edge to the size below which it makes none either.
 constexpr double kDust = 0x1p-30;
 
 template <Scalar S>
@@ -41,8 +41,8 @@ bool isVertexOf(const SupportShape<S>& shape, int vertex) {
 template <Scalar S>
 void check(const Cores<S>& cores, const BruteAnswer& brute, const SupportPair<S>& pair,
            const ClosestPoints<S>& found, const CollisionStats& stats) {
-  // What GJK answers with is one rounded direction times one difference.
-  // In double the edges of the difference are rounded, the short ones most.
+  // GJK answers with one rounded direction times one difference. In double the edges of the difference are
+  // rounded, the short ones most.
   const double turned = std::min(1.0, cores.reach * 0x1p-50 / cores.shortest);
   const double bound = kIsFixed<S> ? 4 * 0x1p-32 + cores.size * 0x1p-30
                                    : cores.size * (0x1p-46 + turned) + cores.reach * 0x1p-50;

@@ -48,7 +48,8 @@ bool isOneOf(const std::vector<Point>& points, const Point& p) {
   return std::find(points.begin(), points.end(), p) != points.end();
 }
 
-/// Without tolerance a hull is exact: made of the points, strictly convex, with none of them outside.
+/// Checks that a hull without tolerance is exact: made of the points, strictly convex, with none of them
+/// outside.
 void checkExactHull(const std::vector<Point>& points) {
   std::vector<Point> hull(points.size());
   int first = -1;
@@ -76,7 +77,7 @@ void checkExactHull(const std::vector<Point>& points) {
     for (const Point& p : points) expect(turn(a, b, p) >= 0, "no point is outside of the hull");
   }
 
-  // The same points in any order, and the hull itself, have the same hull.
+  // The points in any order, and the hull itself, have the same hull.
   std::vector<Point> turned(points.rbegin(), points.rend()), again(points.size());
   const int countAgain = convexHull<Fixed>(turned, again);
   expect(countAgain == count && std::equal(hull.begin(), hull.end(), again.begin()), "order does not matter");
@@ -84,8 +85,8 @@ void checkExactHull(const std::vector<Point>& points) {
   expect(convexHull<Fixed>(hull, own) == count && own == hull, "the hull of a hull is itself");
 }
 
-/// With one, no point is much farther outside than the tolerance, and what is left is a part of the exact
-/// hull.
+/// Checks that with a tolerance no point is much farther outside than it, and what is left is a part of the
+/// exact hull.
 void checkTolerantHull(const std::vector<Point>& points, Fixed tolerance) {
   std::vector<Point> hull(points.size());
   const int count = convexHull<Fixed>(points, hull, nullptr, tolerance);
@@ -185,7 +186,7 @@ void checkMeasures(const Shape<Fixed>& shape) {
       poly.setVertices(vertices);
       area = areaForPoly(vertices, shape.radius());
       moment = momentForPoly(mass, vertices, none, Fixed(0));
-      // Of a line, too.
+      // A line has a centroid, too.
       const Point middle = centroidForPoly(vertices.first(2));
       expect(middle == lerp(vertices[0], vertices[1], Fixed(0.5)) ||
                  middle == lerp(vertices[1], vertices[0], Fixed(0.5)),
@@ -233,7 +234,7 @@ void checkSame(const Shape<Fixed>& shape) {
   expectOther([&](Shape<Fixed>& other) { other.setMass(Fixed(5)); });
 }
 
-/// What a factory makes of a plan: refused with a type, or a shape that is whole.
+/// Checks what a factory makes of a plan: it is refused with a type, or a shape that is whole.
 void checkShape(const ShapePlan& plan) {
   const auto shape = build<Fixed>(plan);
   const auto checked = build<CheckedFixed>(plan);

@@ -18,7 +18,7 @@ class Input {
 
   Input(const std::uint8_t* bytes, std::size_t size) : bytes_(bytes, size) {}
 
-  /// Whether all whole words have been read.
+  /// True if all whole words have been read.
   bool atEnd() const { return bytes_.size() < kWord; }
 
   /// The next word as it is.
@@ -34,7 +34,7 @@ class Input {
   /// matters to the engine, any 53 bits, or near one read before: the coincidences that random bits never
   /// make. Any such number is a double, too.
   Fixed number();
-  /// The same, brought into [low, high] by the remainder of a division.
+  /// Number brought into [low, high] by the remainder of a division.
   Fixed numberIn(Fixed low, Fixed high);
 
  private:
@@ -56,7 +56,7 @@ constexpr std::uint64_t mixed(const std::uint8_t* bytes, std::size_t size) {
   return hash ^ hash >> 32;
 }
 
-/// What a number that Input makes never exceeds in size, metres.
+/// Limit of the numbers that Input makes in size, metres.
 inline constexpr int kMaxNumber = 1 << 20;
 
 }  // namespace samestep::fuzz

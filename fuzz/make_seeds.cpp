@@ -22,7 +22,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr const char* kScenes[] = {"example", "cradle", "filters", "handlers",  "incline",
                                    "stack",   "bounce", "scales",  "soft-stack"};
 constexpr std::uint32_t kMostBodies = 24;
-/// What the targets are given at most.
+/// Bytes the targets are given, at most.
 constexpr std::size_t kMostBytes = 4096;
 
 void write(const std::filesystem::path& path, const Bytes& bytes) {
@@ -60,7 +60,7 @@ void writeRecording(const std::filesystem::path& path, const std::string& name, 
   Bytes recording;
   Recorder<S> recorder(scene.space(), scene.timeStep(), recording, namedHandlerWiring<S>());
   recorder.setPacking(packing);
-  // Those of five steps are small enough without.
+  // Recordings of five steps are small enough without.
   recorder.setKeyframes({ticks == 5 ? 0u : 3u, 1u << 20});
   recorder.note("scene", name);
   for (int i = 0; i < 6; ++i) {

@@ -12,7 +12,8 @@
 
 namespace samestep::fuzz {
 
-// What chance never gets right in a snapshot or recording, and what ages: docs/formats.md has the places.
+// These mend what chance never gets right in a snapshot or recording, and what ages: docs/formats.md has the
+// places.
 
 template <class Number>
 void putNumber(std::vector<std::uint8_t>& bytes, std::size_t at, Number value) {

@@ -59,7 +59,7 @@ std::size_t unknownIn(const Candidate& candidate, const std::vector<bool>& known
 
 }  // namespace
 
-// Called before main by each module; nothing of the standard library is ready then.
+// Each module calls this before main; nothing of the standard library is ready then.
 void __sanitizer_cov_8bit_counters_init(std::uint8_t* begin, std::uint8_t* end) {
   if (begin == end || moduleCount == std::size(modules)) return;
   if (moduleCount > 0 && modules[moduleCount - 1].first == begin) return;
@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
       if (entry.is_regular_file()) left.push_back({entry.path(), 0, {}});
     }
   }
-  // Whatever a static needs is made by the first run.
+  // The first run makes whatever a static needs.
   LLVMFuzzerTestOneInput(nullptr, 0);
   std::sort(left.begin(), left.end(), [](const Candidate& a, const Candidate& b) { return a.path < b.path; });
   std::uint32_t edgeCount = 0;

@@ -32,7 +32,7 @@ Wiring<S> wiring() {
   return result;
 }
 
-/// What a recording holds beside its items: worlds that can be read or are refused, in their order.
+/// Reads what a recording holds beside its items: worlds that can be read or are refused, in their order.
 template <Scalar S>
 void readBeside(const RecordingReader<S>& reader, std::size_t size) {
   std::uint64_t tick = 0;
@@ -95,7 +95,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Bytes bytes(data, data + size);
   const std::uint64_t choice = mixed(data, size) & 7;
   const std::uint64_t ticks = choice == 0 ? kMoreTicks : choice < 4 ? kTicks : 0;
-  // As it came in one of eight.
+  // One of eight stays as it came.
   if (size > 0 && data[size - 1] % 8 != 0) {
     mendRevision(bytes);
     mendRecording(bytes, size > 1 && data[size - 2] % 4 != 0);

@@ -44,7 +44,7 @@ class Files : public SceneFiles {
     }
     throw SceneError(name, 0, "", "is not among the files");
   }
-  /// Of the scene, or of the last file that it named.
+  /// Expects that the error names the scene, or the last file that it named.
   void expectNamed(const SceneError& error, const std::string& file) const {
     const auto names = [&](const std::string& one) {
       const std::string begin = one + ":";
@@ -76,12 +76,12 @@ std::vector<std::uint64_t> run(const SceneSource& source, const Files& files, co
   } catch (const SceneError& error) {
     files.expectNamed(error, file);
   } catch (const Error&) {
-    // What a command or a step refuses.
+    // A command or a step may be refused.
   }
   return hashes;
 }
 
-/// Whether a text may name a scene by formula, and no file.
+/// True if a text may name a scene by formula, and no file.
 bool mayBeFormula(std::string_view text) {
   return text.find(':') != std::string_view::npos && text.find_first_of("{[\"./\\") == std::string_view::npos;
 }

@@ -33,7 +33,7 @@ std::vector<std::uint64_t> run(Bytes bytes, int steps) {
     registerNamedHandlers(space);
     space.adopt(world);
     hashes.push_back(space.hash());
-    // What takes a second to solve is no finding.
+    // A world that takes a second to solve is no finding.
     if (steps == 0 || space.settings().iterations > 20 || space.settings().substeps > 8) return hashes;
     for (int i = 0; i < steps; ++i) {
       space.step(i == 0 ? ratio<S>(1, 60) : S(1));

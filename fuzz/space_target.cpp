@@ -23,7 +23,7 @@ constexpr std::size_t kMostShapes = 24;
 constexpr int kMostOperations = 48;
 constexpr int kMostSteps = 40;
 
-/// What the world should hold.
+/// Model of what the world should hold.
 struct Model {
   struct ShapeEntry {
     ShapeId id;
@@ -574,7 +574,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace samestep::fuzz;
   Input input(data, size);
   const std::uint64_t head = input.word();
-  // What has the same hashes need not be looked at twice: one in eight is.
+  // Worlds that have the same hashes need not be looked at twice: one in eight is.
   const bool twice = (mixed(data, size) & 7) == 0;
   guarded([&] {
     if ((head & 1) == 0) {

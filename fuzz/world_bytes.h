@@ -19,7 +19,7 @@ struct SnapshotInput {
   bool isDouble;
   bool isWhole;  ///< A snapshot, and not a bare world.
   OtherRevision otherRevision;
-  std::vector<std::uint8_t> bytes;  ///< Made good, where the first byte says so.
+  std::vector<std::uint8_t> bytes;  ///< Bytes made good, where the first one says so.
 
   /// @pre !input.empty()
   explicit SnapshotInput(std::span<const std::uint8_t> input)

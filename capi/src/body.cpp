@@ -105,7 +105,7 @@ samestep_status change(samestep_world* world, samestep_body_id body, Action&& ac
               [&]<class World>(World& of) { action(of.space.body(bodyId(body)), typename World::Number()); });
 }
 
-/// What a velocity function gets for `damping` and `seconds` is checked by the body.
+/// Updates the velocity; what a velocity function gets for `damping` and `seconds` is checked by the body.
 template <Scalar S>
 void updateVelocity(Body<S>& body, const Vector<S>& gravity, S damping, S seconds) {
   body.updateVelocity(gravity, damping, seconds);

@@ -5,12 +5,12 @@
 
 namespace samestep::c {
 
-/// What this interface refuses by itself.
+/// Refusal of this interface by itself.
 struct Refusal {
   samestep_status status;
 };
 
-/// What the caller's input function refused: to a replay a fault of the bytes, as any other of the engine.
+/// Refusal of the caller's input function: to a replay a fault of the bytes, as any other of the engine.
 class InputRefused : public Error {
  public:
   explicit InputRefused(samestep_status status)
@@ -25,7 +25,7 @@ class InputRefused : public Error {
 inline void requireOr(bool condition, samestep_status status) {
   if (!condition) refuse(status);
 }
-/// What a pointer points at.
+/// Returns the thing a pointer points at.
 template <class T>
 T& at(T* pointer) {
   requireOr(pointer != nullptr, SAMESTEP_NULL_ARGUMENT);
@@ -40,7 +40,7 @@ const Definition& current(const Definition* definition) {
 
 /// Notes why a call was refused, for a world or, where that is null, for this thread, and tells the hook.
 samestep_status refused(const samestep_world* world, samestep_status status, const char* message) noexcept;
-/// The same for the exception under way.
+/// Handles the exception under way.
 samestep_status caught(const samestep_world* world) noexcept;
 const char* lastMessageOfThread() noexcept;
 

@@ -3,7 +3,7 @@
 #include "base/require_ieee.h"
 #include "definitions.h"
 
-/// What a handler sees: valid during its call.
+/// Contact that a handler sees: valid during its call.
 struct samestep_contact {
   samestep_world* world;
 };
@@ -73,7 +73,7 @@ void accelerate(Body<S>& body, const Vector<S>& gravity, S damping, S dt, void* 
 template <Scalar S>
 void runPostStep(Space<S>&, std::uint64_t key, void* data) {
   WorldOf<S>& world = *static_cast<WorldOf<S>*>(data);
-  // Out of the list first: the function may have itself run again.
+  // The key leaves the list first: the function may have itself run again.
   const auto waiting = world.postStep.extract(key);
   const InCallback inCallback(world);
   if (!waiting.empty()) waiting.mapped().function(&world, key, waiting.mapped().data);

@@ -113,7 +113,7 @@ samestep_settings toC(const Settings<S>& from) {
 template <Scalar S>
 Body<S> toBody(const samestep_body_def& from) {
   Body<S> body = bodyOfType<S>(current(&from));
-  // Where nothing is asked for, a body that has no mass need not be one that may be given it.
+  // A body that has no mass need not be one that may be given it, where nothing is asked for.
   if (from.mass != 0) body.setMass(massNumber<S>(from.mass));
   require<Fault::MomentOutOfRange>(from.rotates != 0 || from.moment == 0,
                                    "What does not rotate has no moment.");
@@ -193,7 +193,7 @@ extern "C" {
 void samestep_settings_init(samestep_settings* settings) {
   if (settings == nullptr) return;
   *settings = samestep::c::toC(samestep::Settings<samestep::Fixed>());
-  // Those that a double tells more exactly than Fixed does.
+  // A double tells these more exactly than Fixed does.
   settings->collision_slop = 0.005;
   settings->collision_bias = 0.00179701;
   settings->contact_margin = 0.02;

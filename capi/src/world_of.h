@@ -11,7 +11,7 @@
 
 #include "numbers.h"
 
-/// What the C interface keeps of a world whatever it computes with.
+/// World as the C interface keeps it, whatever it computes with.
 struct samestep_world {
   explicit samestep_world(samestep::ScalarKind kind) : scalar(kind) {}
   samestep_world(const samestep_world&) = delete;
@@ -19,7 +19,7 @@ struct samestep_world {
   virtual ~samestep_world() = default;
 
   const samestep::ScalarKind scalar;
-  /// Of the caller: false for one that lives for a replay.
+  /// True for a world of the caller, false for one that lives for a replay.
   bool destroyable = true;
   /// Recorders and sessions, which must end before it.
   std::int32_t users = 0;
@@ -107,7 +107,7 @@ struct WorldOf : samestep_world {
   std::unique_ptr<Space<S>> owned;
   Space<S>& space;
 
-  // What was given out, and what it was made of.
+  // These were given out, and what they were made of.
   std::vector<samestep_pose> poses;
   std::vector<samestep_shape_id> bodyShapes;
   std::vector<samestep_vec2> vertices;

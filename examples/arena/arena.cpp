@@ -11,7 +11,7 @@ using namespace samestep;
 
 template <Scalar S>
 Arena<S>::Arena(std::uint32_t players, std::uint32_t crates) : size_(crates > 32 ? 16 : 10) {
-  // Seen from above: nothing falls, and everything slows down.
+  // The arena is seen from above: nothing falls, and everything slows down.
   space_.setDamping(ratio<S>(1, 5));
   const S far(size_);
   const Vector<S> corners[] = {{-far, -far}, {far, -far}, {far, far}, {-far, far}};

@@ -15,7 +15,7 @@ using samestep::BodyId;
 using samestep::Seat;
 using samestep::Tick;
 
-/// What a player holds, one byte.
+/// Buttons that a player holds, one byte.
 enum Button : std::uint8_t { kLeft = 1, kRight = 2, kDown = 4, kUp = 8, kDash = 16 };
 /// The command, one byte, that drops a crate where the player is going; there is room for kMostCrates.
 inline constexpr std::uint8_t kDropCrate = 'c';
@@ -53,7 +53,7 @@ class Arena {
 template <samestep::Scalar S>
 void applyRecorded(samestep::Space<S>& space, std::span<const std::uint8_t> bytes, void* data);
 
-/// What a bot of this seat holds in a tick: it changes its mind every third of a second.
+/// Buttons that a bot of this seat holds in a tick: it changes its mind every third of a second.
 std::uint8_t botButtons(std::uint64_t seed, Seat seat, Tick tick);
 
 }  // namespace arena

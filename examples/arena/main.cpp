@@ -117,7 +117,7 @@ SessionSettings settingsOf(const Options& options, Seat seat) {
   return settings;
 }
 
-/// How the own peer reaches the others.
+/// Table by which the own peer reaches the others.
 class Table {
  public:
   virtual ~Table() = default;
