@@ -155,7 +155,7 @@ TEST_F(ErrorHandlerTest, WhatIsCaughtWithinIsToldOnceAsWhatItBecomes) {
   EXPECT_EQ(told().size(), 3u);
 }
 
-// Without exceptions: the handler is told, then the program ends.
+// A build without exceptions tells the handler, then the program ends.
 TEST(ErrorDeathTest, TheFailureHandlerIsToldBeforeTheEnd) {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   EXPECT_DEATH(

@@ -107,7 +107,7 @@ struct Trees {
     moving.updatePairs();
   }
 
-  /// What the Space makes of the candidates.
+  /// Pairs that the Space makes of the candidates.
   Pairs filtered(const Crowd<S>& crowd) const {
     Pairs pairs;
     for (const KeyPair& pair : moving.pairs()) {
@@ -243,14 +243,14 @@ TYPED_TEST(BBTreeTest, ASearchThatFindsTooManyEndsAndBeginsAnew) {
   EXPECT_TRUE(moving.updatePairs(6));
   EXPECT_FALSE(moving.updatePairs(5)) << "nothing has moved, and there are as many";
 
-  // What is resting is counted, too, wherever it came from.
+  // A resting thing is counted, too, wherever it came from.
   resting.update(4, box<S>(0, 0, 1, 1));
   EXPECT_FALSE(moving.updatePairs(8));
   resting.remove(4);
   EXPECT_TRUE(moving.updatePairs(6));
   EXPECT_EQ(moving.pairs(), all);
 
-  // Those that stay are counted where nothing is looked for.
+  // The things that stay are counted where nothing is looked for.
   moving.remove(2);
   EXPECT_FALSE(moving.updatePairs(2));
   EXPECT_TRUE(moving.updatePairs(3));
@@ -369,7 +369,7 @@ TYPED_TEST(BBTreeTest, BoxesBeyondTheGridAreStillCandidates) {
   EXPECT_THAT(keys, ElementsAre(0, 1));
 }
 
-/// Where the scalar has none, the edge of the grid.
+/// NaN, or, where the scalar has none, the edge of the grid.
 template <Scalar S>
 S notANumber() {
   if constexpr (requires { std::numeric_limits<S>::quiet_NaN(); }) {
@@ -469,7 +469,7 @@ TYPED_TEST(BBTreeTest, AWarmTreeAllocatesNothing) {
   std::uint64_t before = 0;
   for (int step = 0; step < 240; ++step) {
     if (step == 120) before = allocationCount;
-    // Out and back, so that the second half repeats the first.
+    // The crowd goes out and back, so that the second half repeats the first.
     for (auto& member : crowd.members) {
       if (step % 60 == 0) member.velocity = -member.velocity;
       member.box = offset(member.box, member.velocity * ratio<S>(1, 64));

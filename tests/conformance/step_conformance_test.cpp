@@ -46,7 +46,7 @@ Motion motionOf(const Body<S>& body) {
           static_cast<double>(body.angularVelocity())};
 }
 
-/// The same scene in both engines.
+/// Twins: the same scene in both engines.
 template <Scalar S>
 class Twins {
  public:
@@ -100,7 +100,7 @@ class Twins {
   }
   /// The most contact points that one body has had.
   int mostPoints() const { return mostPoints_; }
-  /// How often a lone body has come to touch something.
+  /// Number of times a lone body has come to touch something.
   int landings() const { return landings_; }
 
   /// The largest difference of a coordinate, speed, angle or spin.
@@ -190,7 +190,7 @@ ShapeRecipe box(double halfWidth, double halfHeight) {
            {-halfWidth, halfHeight}}};
 }
 
-/// How far the engines may be apart after some steps, relative to the size of the numbers.
+/// Bound of the difference of the engines after some steps, relative to the size of the numbers.
 ///
 /// In double 1e-9: both do the same in another order of operations. In Fixed, one unit is 2^-32. A step
 /// rounds each speed at most 3 times in each of the 10 iterations and 10 times in building the contact, by

@@ -97,7 +97,7 @@ TYPED_TEST(ArbiterTest, IndicesOutOfBoundsAreRefused) {
   }
   this->pair_.count = 1;
   EXPECT_THROW(arbiter.pointA(1), ContactIndexOutOfBounds);
-  this->pair_.state = ArbiterState::cached;  // As in separate.
+  this->pair_.state = ArbiterState::cached;  // The state is that in separate.
   EXPECT_EQ(arbiter.count(), 0);
   EXPECT_THROW(arbiter.pointA(0), ContactIndexOutOfBounds);
   EXPECT_EQ(arbiter.contactPointSet().count, 0);
@@ -149,7 +149,7 @@ TYPED_TEST(ArbiterTest, ContactPointSetKeepsItsNumberOfPoints) {
   far.points[0].pointA = {S(7), S(7)};
   far.points[1].pointB = {kMaxWorldExtent<S> + S(1), S(0)};
   refused(far);
-  // Of a body that moves, what a point turns has a limit; a static one is not turned.
+  // A body that moves has a limit for what a point turns; a static one is not turned.
   far.points[1].pointB = {S(1 << 11), S(0)};
   refused(far);
 

@@ -27,7 +27,7 @@ class ContactGeometryTest : public ::testing::Test {
 
   Body<S>& box() { return space_.body(bodyOf(space_, box_)); }
   const Pair<S>& pair() const { return space_.state().pairs.at(0); }
-  /// Where the contacts sit on the floor, which has its body's origin in that of the world.
+  /// Anchors of the contacts on the floor, which has its body's origin in that of the world.
   std::vector<Vector<S>> anchors() const {
     std::vector<Vector<S>> all;
     for (int i = 0; i < pair().count; ++i) all.push_back(pair().contacts[i].anchorA);
@@ -92,7 +92,7 @@ TYPED_TEST(ContactGeometryTest, SteadyMeansThatNoPointMovedByMoreThanAMillimetre
   EXPECT_FALSE(isSteady(0, 0, 3 * kPoseUnits, 1));
 }
 
-// What moved is the point that is farthest away, whatever the pose is and however long the shape.
+// The point that moved is the one that is farthest away, whatever the pose is and however long the shape.
 TYPED_TEST(ContactGeometryTest, ALongShapeIsSteadyWithinAMillimetreToo) {
   using S = TypeParam;
   int held = 0, moved = 0;
@@ -220,7 +220,7 @@ TYPED_TEST(ContactGeometryTest, SurfacesAreAskedAtOnce) {
   this->space_.change(this->floor_, [](Shape<S>& shape) { shape.setFriction(ratio<S>(1, 2)); });
   this->space_.step(kTick<S>);
   EXPECT_EQ(this->frictionSeen(), ratio<S>(1, 4));
-  // What a visit sets is gone after the next step.
+  // A value that a visit sets is gone after the next step.
   this->space_.eachArbiter([](Arbiter<S>& arbiter) { arbiter.setFriction(S(7)); });
   EXPECT_EQ(this->frictionSeen(), S(7));
   this->space_.step(kTick<S>);

@@ -121,7 +121,7 @@ TEST(SlotMapTest, AnIdIsGivenOnceAndNoHigherThanMemoryAllows) {
   EXPECT_EQ(map.slots(), Map::kMaxGivenSlots);
 }
 
-// The same objects come and go under the same ids: nothing tells in which order.
+// Objects that come and go under the same ids do not tell in which order.
 TEST(SlotMapTest, TheOrderOfGivenIdsDoesNotShow) {
   Random random(3);
   for (int round = 0; round < 20; ++round) {
@@ -199,7 +199,7 @@ TEST(SlotMapTest, RestoreRefusesBrokenStatesAndKeepsTheOldOne) {
   EXPECT_EQ(map.size(), 1u);
 }
 
-// As a restore uses it: values of slots in use may stay, those of slots that are free now may not.
+// A restore uses this: values of slots in use may stay, those of slots that are free now may not.
 TEST(SlotMapTest, SlotsSetInPlaceGiveOutTheSameIds) {
   Map map;
   for (int i = 0; i < 40; ++i) map.insert(i + 1);

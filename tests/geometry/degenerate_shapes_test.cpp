@@ -219,7 +219,7 @@ TYPED_TEST(DegenerateShapesTest, NeedlesThatCrossTouchWhereTheyCross) {
   EXPECT_NEAR(static_cast<double>(TestFixture::depth(info, 0)), -22, 1e-3);
 }
 
-// As wide as one unit: the edges found nearest were the same one, which does not face itself.
+// The needles are as wide as one unit: the edges found nearest were the same one, which does not face itself.
 TYPED_TEST(DegenerateShapesTest, CoincidentNeedlesTouchAtPlacesOppositeEachOther) {
   using S = TypeParam;
   const Shape<S> needle = TestFixture::raw({{-1, 151682926}, {0, -113816633346}, {-1, 313532612608}});
@@ -248,7 +248,7 @@ TYPED_TEST(DegenerateShapesTest, EdgeBesideDustIsTheOneThatTouches) {
               1e-5);
 }
 
-// Of the two halves of the upper edge, which are all but in one line, either may be found best.
+// Either of the two halves of the upper edge may be found best, which are all but in one line.
 TYPED_TEST(DegenerateShapesTest, BoxDeepInEitherHalfOfAnEdgeTouchesBelowItself) {
   using S = TypeParam;
   const Shape<S> floor = polyShapeRaw<S>(

@@ -201,7 +201,8 @@ TYPED_TEST(ShapeQueryTest, AWayThatEndsInTouchWithACornerHits) {
 TYPED_TEST(ShapeQueryTest, AWayThatTouchesInPassingHits) {
   using S = TypeParam;
   const auto at = [](int x, int y) { return TestFixture::at(x, y); };
-  // Along the upper face of a box, which begins at x = 10; past its corner; along a segment; by a circle.
+  // The shots go along the upper face of a box, which begins at x = 10; past its corner; along a segment; by
+  // a circle.
   TestFixture::expectHit(TestFixture::shoot(TestFixture::box(), at(18, 5), at(2, 5)), ratio<S>(1, 2),
                          at(10, 5), at(1, 0));
   TestFixture::expectHit(TestFixture::shoot(TestFixture::box(), at(11, 4), at(9, 6)), ratio<S>(1, 2),

@@ -245,7 +245,7 @@ TYPED_TEST(ShapeTest, PreparedShapeIsMovedAgainWithoutTheShape) {
   }
 }
 
-// Of a box around its origin half the planes are computed.
+// Half the planes of a box around its origin are computed.
 TYPED_TEST(ShapeTest, EachPlaneOfABoxIsMovedByThePoseToTheLastBit) {
   using S = TypeParam;
   Random random(11);

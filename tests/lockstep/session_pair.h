@@ -131,19 +131,19 @@ class Table {
   void play(int count) {
     for (int i = 0; i < count; ++i) frame(static_cast<std::uint8_t>(i / 7));
   }
-  /// Of the newest tick that all are certain of and have made.
+  /// Newest tick that all are certain of and have made.
   Tick common() const {
     Tick tick = 0xffffffffu;
     for (const auto& session : sessions) tick = std::min({tick, session->tick(), session->confirmed()});
     return tick;
   }
-  /// Whether all had the same state at that tick.
+  /// True if all had the same state at that tick.
   bool agree() const {
     return std::all_of(games.begin(), games.end(), [this](const AddingGame& game) {
       return game.sums[common() % game.sums.size()] == games[0].sums[common() % game.sums.size()];
     });
   }
-  /// Whether a seat has told an event of this kind that was not fetched yet.
+  /// True if a seat has told an event of this kind that was not fetched yet.
   bool told(Seat seat, SessionEvent::Kind kind, SessionEvent& event) {
     while (sessions[seat]->next(event)) {
       if (event.kind == kind) return true;

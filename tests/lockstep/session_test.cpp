@@ -35,7 +35,7 @@ TEST(SessionTest, StartsWhenAllHaveHeardEachOther) {
 }
 
 TEST(SessionTest, PureLockstepNeedsTheWayThereOnlyAndSavesNothing) {
-  // What is sent in one frame is there in the next.
+  // Datagrams sent in one frame are there in the next.
   Table table(2, lockstep(1));
   table.play(100);
 
@@ -255,7 +255,7 @@ TEST(SessionTest, WhoIsHeardIsNotDroppedBecauseOneAsks) {
   EXPECT_TRUE(table.agree());
 }
 
-/// Whoever goes on talking but makes no inputs.
+/// The peer goes on talking but makes no inputs.
 TEST(SessionTest, APeerThatMakesNoInputsIsDropped) {
   Table table(3);
   table.play(30);
@@ -349,7 +349,7 @@ TEST(SessionTest, RefusesSettingsOutsideTheirRangesByName) {
   EXPECT_EQ(refusedSettings([](auto&, auto&) {}), "");
 }
 
-// Whatever a peer says, the session lives on, within its memory.
+// The session lives on, within its memory, whatever a peer says.
 TEST(SessionTest, MalformedDatagramsAreCountedAndDropped) {
   std::mt19937_64 random(1);
   for (int round = 0; round < 60; ++round) {

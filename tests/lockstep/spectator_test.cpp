@@ -38,7 +38,7 @@ struct Watched {
       watcherPost.cut = false;
     }
   }
-  /// Whether who watches has what the players had at its tick.
+  /// True if the spectator has what the players had at its tick.
   bool same() const {
     return spectator->tick() > 0 &&
            seen.sum == table.games[0].sums[spectator->tick() % table.games[0].sums.size()];
@@ -55,7 +55,7 @@ struct Watched {
                        auto& self = *static_cast<Watched*>(data);
                        const Session& session = *self.table.sessions[0];
                        tick = std::min(session.tick(), session.confirmed());
-                       // Of more than one block.
+                       // The state has more than one block.
                        bytes.assign(2000, 0);
                        std::memcpy(bytes.data(), &self.table.games[0].sums[tick % 4096], 8);
                        return tick > 0;

@@ -73,7 +73,7 @@ class Chaos {
     for (Seat peer = 0; peer < peers_.size(); ++peer) {
       for (Seat gone = 0; gone < peers_.size(); ++gone) {
         if ((view.voters & bit(peer)) == 0 || (view.dropped & bit(gone)) == 0) continue;
-        // Whoever goes on has no input that is not part of the decision.
+        // A peer that goes on has no input that is not part of the decision.
         EXPECT_LE(ends_[peer][gone], view.end[gone]);
       }
     }

@@ -62,7 +62,7 @@ int inEachUnsoundMode(Try&& call) {
   return modes;
 }
 
-/// What a game asks for in between: nothing of it may depend on the mode in Fixed.
+/// Hashes of a scene and of what a game asks for in between: nothing of it may depend on the mode in Fixed.
 template <Scalar S>
 std::vector<std::uint64_t> hashesOfScene(std::uint64_t seed) {
   Space<S> space;

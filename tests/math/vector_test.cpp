@@ -162,7 +162,7 @@ TYPED_TEST(VectorTest, NearExcludesTheLimitItself) {
   EXPECT_FALSE(near(a, a, S(0)));
 }
 
-// What products rounded to 2^-32 could not tell apart.
+// Products rounded to 2^-32 could not tell these apart.
 
 TEST(VectorFixedTest, CrossOfAlmostParallelVectorsIsDecidedExactly) {
   using V = Vector<Fixed>;

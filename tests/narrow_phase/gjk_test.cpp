@@ -78,7 +78,7 @@ TYPED_TEST(GjkTest, FindsTheDistanceOfShapesApart) {
   EXPECT_GT(apart, 300);
 }
 
-// The same overlap by two ways: growing a polygon in the difference, and trying every face.
+// The overlap is found by two ways: growing a polygon in the difference, and trying every face.
 TYPED_TEST(GjkTest, FindsTheOverlapThatTheFacesHave) {
   using S = TypeParam;
   Random random(22);

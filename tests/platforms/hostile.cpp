@@ -16,7 +16,7 @@ using V = Vector<double>;
 using T = Transform<double>;
 using B = BB<double>;
 
-// With external linkage, so that the compiler must keep what they name.
+// The arrays have external linkage, so that the compiler must keep what they name.
 D (*hostile1[])(D, D, D) = {mulAdd, mulDiv, clamp<D>, lerp<D>, lerpConst<D>};
 D (*hostile2[])(D, D, D, D) = {dot, cross, exactDot, exactCross};
 D (*hostile3)(D, D, D, D, D, D) = dot3;

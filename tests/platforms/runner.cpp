@@ -152,8 +152,8 @@ void printFingerprints() {
 }
 
 #ifndef SAMESTEP_FIXED_ONLY
-/// What a game computes with double by itself, under the flags that the library gives it: vectors turned on
-/// and on, and sums of products, from numbers that differ in every bit.
+/// Hash of what a game computes with double by itself, under the flags that the library gives it: vectors
+/// turned on and on, and sums of products, from numbers that differ in every bit.
 std::uint64_t hashOfGame() {
   constexpr int kCount = 64;
   std::uint64_t random = 1;

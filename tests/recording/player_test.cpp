@@ -21,7 +21,7 @@ class PlayerTest : public ::testing::Test {
   static constexpr KeyframeBudget kEveryFour{4, 1u << 20};
 
   static Bytes match() { return recordSmallMatch<S>(24, kEveryFour); }
-  /// With another keyframe after tick 8 and the hash to it: a lie all of a piece.
+  /// Recording with another keyframe after tick 8 and the hash to it: a lie all of a piece.
   static Bytes forged() {
     by_hand::Recording parts = by_hand::takeApart(match());
     std::size_t eighth = 0;

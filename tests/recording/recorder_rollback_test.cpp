@@ -70,7 +70,7 @@ TYPED_TEST(RecorderRollbackTest, WhatWasTakenBackIsNotInTheRecording) {
   EXPECT_TRUE(verify<TypeParam>(plain, namedHandlerWiring<TypeParam>()).matches);
 }
 
-/// What the players do before a step: the same each time, or a wrong guess.
+/// Plays what the players do before a step: the same each time, or a wrong guess.
 template <Scalar S>
 void play(Recorder<S>& recorder, BodyId player, std::uint64_t tick, bool guess) {
   if (tick % 3 == 0 || guess) recorder.apply(push<S>(player, guess ? -2 : 1));
@@ -203,7 +203,7 @@ TYPED_TEST(RecorderRollbackTest, AGameThatStepsByItselfIsFollowed) {
   EXPECT_TRUE(verify<TypeParam>(bytes, namedHandlerWiring<TypeParam>()).matches);
 }
 
-// With a long match, most of the recording is with the sink when the world goes back.
+// A long match has most of its recording with the sink when the world goes back.
 TYPED_TEST(RecorderRollbackTest, WorldsThatAreNotTheRecordingsAreRefusedUntilOneIs) {
   Space<TypeParam> space;
   const BodyId player = fillSmall(space);
@@ -305,7 +305,7 @@ TYPED_TEST(RecorderRollbackTest, AWarmMatchWithARingOfSavesTakesNoMemory) {
   EXPECT_GT(given, givenBefore);
 }
 
-/// What a tick of a match does, all of it recorded.
+/// Plays a tick of a match, all of it recorded.
 template <Scalar S>
 void playTick(Recorder<S>& recorder, BodyId player, std::uint64_t tick, std::size_t& done) {
   std::vector<Command<S>> commands;

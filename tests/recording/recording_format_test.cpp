@@ -28,7 +28,7 @@ class RecordingFormatTest : public ::testing::Test {
  protected:
   static constexpr KeyframeBudget kEveryFour{4, 1u << 20};
 
-  /// Why a reader refuses it, and where; empty where it does not.
+  /// Complaint of a reader that refuses it, and where; empty where it does not.
   static std::string complaint(const Bytes& bytes, std::uint64_t* offset = nullptr) {
     try {
       RecordingReader<S> reader(bytes);

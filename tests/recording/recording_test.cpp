@@ -276,7 +276,7 @@ TEST(RecordingBytesTest, AreTheSameForCheckedAndWrappingFixed) {
 }
 #endif
 
-/// What a function that a step or command calls asks of the recorder, and whether it was refused.
+/// Question that a function called by a step or command asks of the recorder, and whether it was refused.
 template <Scalar S>
 struct FromWithin {
   Recorder<S>* recorder = nullptr;

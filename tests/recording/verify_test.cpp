@@ -18,7 +18,7 @@ template <class S>
 class VerifyTest : public ::testing::Test {};
 TYPED_TEST_SUITE(VerifyTest, AllScalars);
 
-/// Where the hash of each step stands.
+/// Offsets of the hash of each step.
 template <Scalar S>
 std::vector<std::size_t> hashOffsets(const Bytes& bytes) {
   std::vector<std::size_t> offsets;
@@ -401,7 +401,8 @@ TYPED_TEST(VerifyTest, NoneOfThousandsOfCorruptionsCrashesOrIsTakenForAnotherHis
   EXPECT_GT(refused, rounds / 3);
 }
 
-// Whatever decodes can be stepped: hashes do not protect a reader that has been given worlds made to harm it.
+// Worlds that decode can be stepped: hashes do not protect a reader that has been given worlds made to harm
+// it.
 TYPED_TEST(VerifyTest, AlteredWorldsThatAreAcceptedCanBeStepped) {
   const Bytes original = recordSmallMatch<TypeParam>();
   const std::size_t commands = hashOffsets<TypeParam>(original)[0];
@@ -426,7 +427,7 @@ TYPED_TEST(VerifyTest, AlteredWorldsThatAreAcceptedCanBeStepped) {
   EXPECT_GT(stepped, 1000u);
 }
 
-/// What a server knows of recordSmallMatch(20).
+/// Expectations of a server that knows recordSmallMatch(20).
 template <Scalar S>
 Expectations expectationsOfSmallMatch() {
   Space<S> space;

@@ -32,7 +32,7 @@ bool isLarge(const std::string& name) {
   return std::find(large.begin(), large.end(), name) != large.end();
 }
 
-/// Those of the folder: families have a colon in their names.
+/// Names of the scenes in the folder: families have a colon in their names.
 std::vector<std::string> sceneNames() {
   std::vector<std::string> names;
   for (const SceneSummary& scene : listScenes()) {

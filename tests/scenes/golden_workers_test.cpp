@@ -25,7 +25,7 @@ std::vector<std::string> sceneNames() {
   return names;
 }
 
-/// Which solver a scene is played with in place of its own.
+/// Solver that a scene is played with in place of its own.
 struct Way {
   const char* name;
   bool soft;

@@ -93,7 +93,7 @@ TYPED_TEST(SceneTest, TheSoftStepHasSettingsOfItsOwn) {
   EXPECT_EQ(settings.bounceThreshold, ratio<TypeParam>(1, 4));
 }
 
-// For a while the soft step, having become the default, was what a scene got that asked for the other.
+// The soft step, having become the default, was for a while what a scene got that asked for the other.
 TYPED_TEST(SceneTest, SolverAndPrecisionAreThoseTheSceneNames) {
   const auto settingsOf = [](const std::string& settings) {
     return sceneFrom<TypeParam>(R"({"samestep": 1, "settings": )" + settings + "}").space().settings();
@@ -113,8 +113,8 @@ struct KeyCase {
   const char* instead = "";
 };
 
-/// Of all keys that an object of a scene may have, each but one that is for events alone changes the world:
-/// none is read and forgotten.
+/// Expects that each key that an object of a scene may have, but one that is for events alone, changes the
+/// world: none is read and forgotten.
 template <Scalar S>
 void eachKeyIsHeard(const std::string& before, const std::string& after, const std::vector<KeyCase>& cases,
                     std::string_view forEvents = {}) {
@@ -125,7 +125,7 @@ void eachKeyIsHeard(const std::string& before, const std::string& after, const s
     const std::string with = "\"" + std::string(key) + "\": " + value + beside;
     EXPECT_NE(hashOf(with), hashOf(*instead != 0 ? instead : *beside != 0 ? beside + 1 : "")) << with;
   }
-  // Which keys there are is what one that there is not is refused with.
+  // The refusal of a key that there is not says which ones there are.
   std::string known = complaint<S>(before + "\"?\": 0" + after);
   known.erase(0, known.find("known here: ") + std::strlen("known here: "));
   std::istringstream keys(known);

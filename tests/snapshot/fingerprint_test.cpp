@@ -17,7 +17,7 @@ template <Scalar S>
 class FingerprintTest : public ::testing::Test {};
 TYPED_TEST_SUITE(FingerprintTest, AllScalarsAndChecked);
 
-/// By scalar; scripts/golden writes them.
+/// Golden fingerprints by scalar; scripts/golden writes them.
 std::map<std::string, std::uint64_t> goldenFingerprints() {
   std::map<std::string, std::uint64_t> golden;
   std::ifstream stream(SAMESTEP_GOLDEN "/fingerprint.txt");

@@ -29,7 +29,7 @@ constexpr std::size_t kWorldAt = 28;
 template <Scalar S>
 class SnapshotTest : public ::testing::Test {
  protected:
-  /// What a world of many kinds of things is like in the middle of it all: holes among bodies and shapes,
+  /// Fills a world with many kinds of things, in the middle of it all: holes among bodies and shapes,
   /// contacts, a handler.
   static void fill(Space<S>& space, std::uint64_t seed) {
     registerNamedHandlers(space);
@@ -103,7 +103,7 @@ TYPED_TEST(SnapshotTest, LoadedItContinuesAsTheOriginal) {
     this->fill(original, seed);
     Space<S> other;
     registerNamedHandlers(other);
-    fillAtRandom(other, seed + 50);  // What was there is gone afterwards.
+    fillAtRandom(other, seed + 50);  // The world that was there is gone afterwards.
     hashesOf(other, 5);
     for (int part = 0; part < 4; ++part) {
       const Bytes bytes = snapshotOf(original);
@@ -257,7 +257,7 @@ TYPED_TEST(SnapshotTest, CountsOfBillionsAreRefusedBeforeMemoryIsTaken) {
     Bytes altered = bytes;
     for (std::size_t j = 0; j < 4; ++j) altered[i + j] = 0xff;
     mendSnapshot(altered);
-    // As many records as the bytes could hold, at the most.
+    // The records are as many as the bytes could hold, at the most.
     ASSERT_LE(memoryTaken(altered), usual + bytes.size() / 2 * sizeof(Shape<S>)) << i;
   }
 }

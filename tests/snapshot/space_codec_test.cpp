@@ -119,7 +119,7 @@ TYPED_TEST(SpaceCodecTest, KeptContactsMustBeOnesThatShapesCanHave) {
   refused();
 }
 
-// What a solver leaves: pushes up to 2^20 m/s of the lighter body, friction up to 2^10 times that.
+// A solver leaves pushes up to 2^20 m/s of the lighter body, friction up to 2^10 times that.
 TYPED_TEST(SpaceCodecTest, KeptImpulsesMustBeOnesThatASolverLeaves) {
   using S = TypeParam;
   Space<S> space;

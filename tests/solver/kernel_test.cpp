@@ -132,14 +132,14 @@ struct IntegerSource {
   using Speed = typename N::Speed;
   Random random;
   static constexpr bool kWide = std::same_as<N, WideNumbers>;
-  /// Of speeds, ways and impulses.
+  /// Bits of speeds, ways and impulses.
   int bits = 20;
   int momentBits = 3;
   Speed upTo(int most) { return static_cast<Speed>(wide(std::min(bits, most))); }
   std::int64_t wide(int width) { return static_cast<std::int64_t>(random.next()) >> (63 - width); }
   std::int32_t number(int width) { return static_cast<std::int32_t>(wide(width)); }
   std::int32_t unit() { return number(N::kUnitBits); }
-  /// Up to 2^momentBits.
+  /// Random moment up to 2^momentBits.
   std::int32_t moment() {
     const int width = N::kSpinBits + momentBits;
     return number(width) & static_cast<std::int32_t>((std::uint32_t{1} << width) - 1);
@@ -196,14 +196,14 @@ struct IntegerSource {
       to.mostGap = to.mostOverlap = std::int64_t{1} << 43;
       to.mostSum = std::int64_t{1} << 52;
     }
-    // Of more than three in a step.
+    // The time is that of more than three substeps in a step.
     to.substep = kept() >> 2;
   }
 };
 using FastSource = IntegerSource<FastNumbers>;
 using WideSource = IntegerSource<WideNumbers>;
 
-/// What a lane is prepared from: rotations and a normal, which are of length 1 at most, as arms are.
+/// Fills what a lane is prepared from: rotations and a normal, which are of length 1 at most, as arms are.
 template <class Source, class N = typename Source::Numbers>
 void fillInput(Source& from, BlockInput<N>& input, int lane, int points) {
   const auto direction = [&](auto& x, auto& y) {
@@ -314,7 +314,7 @@ bool sameBytes(const std::vector<T>& a, const std::vector<T>& b) {
 template <class N>
 using NamedPasses = std::vector<std::pair<std::string, const SoftPasses<N>*>>;
 
-/// Of the accurate kernel, one number at a time.
+/// Passes of the accurate kernel, one number at a time.
 template <class S>
 constexpr SoftPasses<WideNumbers> kWideBy1 =
     kPassesOf<WideScalarLanes<S>, CoefficientLanes<OneAtATime, WideNumbers>>;
@@ -394,7 +394,7 @@ TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange
     for (const auto& [name, passes] : fastKernels()) {
       Work<FastNumbers> work = start;
       ASSERT_EQ(work.run(*passes) != 0, left) << name << ", seed " << seed;
-      // What has left the range is worth nothing.
+      // A result that has left the range is worth nothing.
       if (left) continue;
       ASSERT_TRUE(sameBytes(work.bodies, expected.bodies)) << name << ", seed " << seed;
       ASSERT_TRUE(sameBytes(work.pushes, expected.pushes)) << name << ", seed " << seed;
@@ -412,7 +412,7 @@ TEST(FastKernelTest, EveryKernelGivesTheSameBitsAndFindsTheSameNumbersOutOfRange
 TEST(WideKernelTest, EveryKernelGivesTheBitsOfCheckedNumbersWhichReportNothing) {
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
     WideSource source{Random(seed)};
-    // Up to the ends of all ranges.
+    // The numbers go up to the ends of all ranges.
     source.bits = source.random.between(8, 58);
     const Work<WideNumbers> start = randomWork(source);
     Work<WideNumbers> expected = start;

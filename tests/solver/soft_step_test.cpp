@@ -28,7 +28,7 @@ TYPED_TEST(SoftStepTest, ASpringIsThatOfItsFormula) {
   EXPECT_NEAR(static_cast<double>(softness.impulseScale), 1 / (1 + b), 1e-8);
 }
 
-// Without damping it takes 1 / h of an overlap each second, which in a substep of one unit does not fit
+// A spring without damping takes 1 / h of an overlap each second, which in a substep of one unit does not fit
 // Fixed.
 TYPED_TEST(SoftStepTest, ASpringTakesNoMoreThanItsLimitInTheShortestSubsteps) {
   using S = TypeParam;

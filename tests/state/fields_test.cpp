@@ -19,7 +19,7 @@ namespace {
 template <Scalar S>
 class FieldsTest : public ::testing::Test {
  protected:
-  /// With as many vertices as there can be: a shape shows only those it has.
+  /// Polygon with as many vertices as there can be: a shape shows only those it has.
   static Shape<S> fullPolygon() {
     std::vector<Vector<S>> points;
     for (int i = 0; i < kMaxPolyVertices; ++i) {
@@ -49,8 +49,8 @@ TYPED_TEST(FieldsTest, RecordsOfMovingThingsAreTriviallyCopyable) {
   static_assert(std::is_trivially_copyable_v<HandlerBinding>);
 }
 
-// What is not visited: numbers that follow from the others, what only the step that wrote it and visits read,
-// the ids a Space gives, and named fillers.
+// These bytes are not visited: numbers that follow from the others, what only the step that wrote it and
+// visits read, the ids a Space gives, and named fillers.
 TYPED_TEST(FieldsTest, FieldsAccountForEveryByte) {
   using S = TypeParam;
   constexpr std::size_t kDerived = sizeof(Vector<S>) + 2 * sizeof(Scaled<S>) +

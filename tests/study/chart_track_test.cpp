@@ -42,7 +42,7 @@ TEST(ExactAnswerTest, OnlySomeScenesHaveOne) {
   EXPECT_EQ(exactAnswerOf("soup"), nullptr);
 }
 
-// From 5 m: down in 1 s, with 10 m/s; up again with 5 m/s to 1.25 m, down after 1 s.
+// The ball falls from 5 m: down in 1 s, with 10 m/s; up again with 5 m/s to 1.25 m, down after 1 s.
 TEST(ExactAnswerTest, BallFallsAndBouncesWithItsElasticity) {
   StartWorld start;
   start.gravityY = -10;
@@ -87,7 +87,7 @@ template <class S>
 class ExactSceneTest : public ::testing::Test {};
 TYPED_TEST_SUITE(ExactSceneTest, AllScalars);
 
-/// How far bodies are from the exact answer at its last step.
+/// Distance of bodies from the exact answer at its last step.
 template <Scalar S>
 double distanceAtEnd(const char* name, std::uint64_t steps, SolverKind solver, std::size_t bodies) {
   Scene<S> scene(SceneSource::find(name));

@@ -21,7 +21,7 @@ std::string fileOfProject(const std::string& name) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// What scripts/envelope wrote.
+/// Limits that scripts/envelope wrote.
 const std::vector<Limit>& expectedLimits() {
   static const std::vector<Limit> limits = readLimits(fileOfProject("tests/envelope_limits.csv"));
   return limits;

@@ -12,9 +12,9 @@ namespace samestep {
 
 /// Calls of operator new since the program began.
 inline std::uint64_t allocationCount = 0;
-/// What they asked for, bytes.
+/// Bytes they asked for.
 inline std::uint64_t allocatedBytes = 0;
-/// How many more calls take memory before one fails; none fails below 0.
+/// Number of further calls that take memory before one fails; none fails below 0.
 inline std::int64_t allocationsUntilFailure = -1;
 
 /// Counts a call that asks for so much; null where it is to fail.

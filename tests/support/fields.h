@@ -32,7 +32,7 @@ class LeafVisitor {
 
   int count() const { return count_; }
   std::size_t bytes() const { return bytes_; }
-  /// Of the one that was changed.
+  /// Name of the one that was changed.
   const std::string& changed() const { return changed_; }
 
  private:

@@ -34,7 +34,7 @@ inline void addNumber(Bytes& bytes, std::uint64_t value, std::size_t size) {
 
 struct Section {
   std::uint8_t kind = 0;
-  std::uint32_t unpacked = 0;  ///< Where kind has kPacked.
+  std::uint32_t unpacked = 0;  ///< Size unpacked, where kind has kPacked.
   Bytes payload;
 };
 

@@ -17,7 +17,7 @@ using Bytes = std::vector<std::uint8_t>;
 /// Writes all hashes again, after something before them was changed.
 inline void mendChecksum(Bytes& bytes) { mendRecording(bytes); }
 
-/// The same match as a recording of version 2 told it, without claims, notes and keyframes.
+/// Bytes of the match as a recording of version 2 told it, without claims, notes and keyframes.
 template <Scalar S>
 Bytes asVersion2(const Bytes& bytes) {
   Bytes old(bytes.begin(), bytes.begin() + by_hand::kHeaderBytes);
@@ -58,7 +58,7 @@ Spawn<S> discToSpawn() {
   return spawn;
 }
 
-/// The same with ids of the caller's choice.
+/// Spawn with ids of the caller's choice.
 template <Scalar S>
 Spawn<S> underGivenIds(Spawn<S> spawn, BodyId body, ShapeId shape) {
   spawn.id = body;

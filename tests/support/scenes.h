@@ -31,7 +31,7 @@ Scene<S> sceneFrom(const std::string& text, const Texts& texts = {}) {
   return Scene<S>(SceneSource::fromText(text, "test.json", &files));
 }
 
-/// What a scene is refused with; empty where it is not.
+/// Complaint with which a scene is refused; empty where it is not.
 template <Scalar S>
 std::string complaint(const std::string& text, const Texts& texts = {}) {
   try {

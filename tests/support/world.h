@@ -27,7 +27,7 @@ ShapeId addDisc(Space<S>& space, const Vector<S>& position, S radius, S mass,
   return space.add(disc);
 }
 
-/// The same with a box.
+/// Adds a body with a box.
 template <Scalar S>
 ShapeId addBox(Space<S>& space, const Vector<S>& position, S width, S height, S mass,
                const Vector<S>& velocity = Vector<S>()) {

@@ -22,7 +22,7 @@ std::atomic<long> allocations = 0;
 std::atomic<std::size_t> live = 0;
 std::atomic<std::size_t> mostLive = 0;
 
-/// How many more calls take memory before one fails; none fails below 0.
+/// Number of further calls that take memory before one fails; none fails below 0.
 std::atomic<long> untilFailure = -1;
 
 /// Null where the call is to fail, or there is no memory.
@@ -80,7 +80,7 @@ void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { r
 namespace samestep {
 namespace {
 
-/// What a Space takes at the worst for each pair, with all that belongs to its shapes, bytes.
+/// Bytes that a Space takes at the worst for each pair, with all that belongs to its shapes.
 template <Scalar S>
 double mostBytesPerPair(SolverKind solver, ContactPrecision precision) {
   if (solver == SolverKind::sequentialImpulses) return 1350;
@@ -93,7 +93,7 @@ template <Scalar S>
 struct Operation {
   const char* name;
   void (*act)(Space<S>& space);
-  /// Whether nothing was computed of the world yet.
+  /// True if nothing was computed of the world yet.
   bool cold = false;
 };
 
@@ -104,8 +104,8 @@ BodyId bodyAt(Space<S>& space, std::uint32_t shape) {
   return bodyOf(space, space.state().shapes.idAt(shape));
 }
 
-/// Without its only shape the body weighs nothing: the step refuses one that is dynamic. The change of type
-/// takes no memory after the removal.
+/// Removes the only shape of a body, which then weighs nothing: the step refuses one that is dynamic. The
+/// change of type takes no memory after the removal.
 template <Scalar S>
 void removeBox(Space<S>& space) {
   const BodyId body = space.shape(kBox).body();
@@ -113,7 +113,7 @@ void removeBox(Space<S>& space) {
   space.setType(body, BodyType::kinematicBody);
 }
 
-/// Of bodies and shapes.
+/// Changes of bodies and shapes.
 template <Scalar S>
 std::vector<Operation<S>> changes() {
   return {
@@ -288,7 +288,7 @@ TYPED_TEST(AllocationTest, AWarmStepTakesNoMemory) {
   space.registerHandler(1, handler);
   space.addWildcardHandler(1, 1);
   for (std::uint64_t seed = 0; seed < 4; ++seed) fillAtRandom(space, seed);
-  // The same steps again need no more room than the first time.
+  // Steps made again need no more room than the first time.
   const SavedSpace<S> saved = space.save();
   const auto play = [&] {
     for (int i = 0; i < 300; ++i) space.step(kTick<S>);

@@ -35,7 +35,7 @@ std::vector<std::string> listed(const Space<S>& space) {
   for (const std::string& end : words("end", space.contactEvents().ends)) all.push_back(end);
   return all;
 }
-/// The same, sorted: handlers hear of ends after begins, but of removals between the steps.
+/// Events, sorted: handlers hear of ends after begins, but of removals between the steps.
 std::vector<std::string> sorted(std::vector<std::string> all) {
   std::stable_sort(all.begin(), all.end());
   return all;
@@ -68,7 +68,7 @@ void listAll(Space<S>& space) {
   space.setEventListing({true, true, S(0)});
 }
 
-/// What a game does between steps.
+/// Disturbs the world as a game does between steps.
 template <Scalar S>
 void disturb(Space<S>& space, Random& random) {
   std::vector<BodyId> bodies;

@@ -31,7 +31,7 @@ class FreeFlightTest : public ::testing::Test {
     space.add(boxShape<S>(space.staticBody(), BB<S>(S(-3), S(-100), ratio<S>(-51, 100), S(100))));
     return addBox<S>(space, {}, S(1), S(1), S(1));
   }
-  /// Of a body of 1 kg under gravity over y = 0, J.
+  /// Energy of a body of 1 kg under gravity over y = 0, J.
   static double energyOf(const Body<S>& body, double height) {
     const double x = double(body.velocity().x), y = double(body.velocity().y);
     const double spin = double(body.angularVelocity());

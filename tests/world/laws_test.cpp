@@ -68,7 +68,7 @@ class LawsTest : public ::testing::Test {
     });
     return sum;
   }
-  /// How deep each pair of shapes overlaps, m, by their ids.
+  /// Depths of the overlap of each pair of shapes, m, by their ids.
   using Depths = std::vector<std::pair<std::pair<ShapeId, ShapeId>, double>>;
   static Depths depthsOf(Space<S>& space) {
     Depths depths;
@@ -79,7 +79,7 @@ class LawsTest : public ::testing::Test {
     });
     return depths;
   }
-  /// By how much overlaps have become less, m, summed over the pairs.
+  /// Depth by which overlaps have become less, m, summed over the pairs.
   static double removed(const Depths& before, const Depths& after) {
     double sum = 0;
     for (const auto& [pair, depth] : before) {
@@ -124,8 +124,8 @@ TYPED_TEST(LawsTest, FreeFallIsExact) {
   }
 }
 
-// What a contact takes from one body it gives to the other. In Fixed equal masses change by the same number
-// of units, so nothing is lost at all. In double each addition to a velocity below 2^4 m/s rounds by 2^-50 at
+// A contact gives one body what it takes from the other. In Fixed equal masses change by the same number of
+// units, so nothing is lost at all. In double each addition to a velocity below 2^4 m/s rounds by 2^-50 at
 // most; there are at most 2 bodies * 32 contacts * 11 passes * 400 steps of them, times the mass.
 TYPED_TEST(LawsTest, MomentumOfEqualMassesIsKept) {
   using S = TypeParam;
@@ -152,7 +152,7 @@ TYPED_TEST(LawsTest, MomentumOfEqualMassesIsKept) {
   EXPECT_NEAR(double(total().y), double(before.y), bound);
 }
 
-// With masses m and n >= m a change u of the relative speed is shared as u n/(m+n) and u m/(m+n), each factor
+// A change u of the relative speed is shared by masses m and n >= m as u n/(m+n) and u m/(m+n), each factor
 // and product rounded to 2^-33: at |u| <= 2^5 m/s both together lose less than 2^6 * (m + n) * 2^-32 N s.
 TYPED_TEST(LawsTest, MomentumOfAllMassesIsKeptWithinTheRoundingOfTheImpulses) {
   using S = TypeParam;
@@ -225,8 +225,8 @@ TYPED_TEST(LawsTest, OutsideTheFrictionConeTheSlideIsCoulombs) {
   }
 }
 
-// From v = 4 m/s at mu g = 4 m/s^2: at rest after 64 steps, having gone v^2 / (2 mu g) = 2 m and, as
-// positions move before velocities, half a step of v more.
+// A slide from v = 4 m/s at mu g = 4 m/s^2 is at rest after 64 steps, having gone v^2 / (2 mu g) = 2 m and,
+// as positions move before velocities, half a step of v more.
 TYPED_TEST(LawsTest, ASlideEndsWhereCoulombSays) {
   using S = TypeParam;
   Space<S> space;

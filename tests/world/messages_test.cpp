@@ -177,7 +177,7 @@ TYPED_TEST(MessagesTest, APlaceOutsideOfTheWorldIsRefusedWhereItIsSet) {
   const auto setFar = [&] { space.body(id).setPosition({S(50000), S(0)}); };
   EXPECT_EQ(messageOf(setFar), "Body::setPosition: position is (50000, 0) m, allowed are -32768 to 32768 m");
   EXPECT_EQ(space.body(id).position(), Vector<S>());
-  // Whatever became of the Space meanwhile.
+  // The Space may have become anything meanwhile.
   const SavedSpace<S> saved = space.save();
   space.setWorldExtent(S(60000));
   EXPECT_EQ(messageOf(setFar), "nothing is thrown");
@@ -191,7 +191,7 @@ TYPED_TEST(MessagesTest, APlaceOutsideOfTheWorldIsRefusedWhereItIsSet) {
             "Space::add: the centre of mass is at (50000, 0) m, allowed are -32768 to 32768 m");
 }
 
-// What a step carries out of the world is held at its border, and told: see RangeEvent.
+// A body that a step carries out of the world is held at its border, and told: see RangeEvent.
 TYPED_TEST(MessagesTest, AStepHoldsABodyAtTheBorderOfTheWorld) {
   using S = TypeParam;
   for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {

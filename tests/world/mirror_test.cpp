@@ -105,7 +105,7 @@ TYPED_TEST(MirrorTest, CirclesOnCirclesAndSegmentsAreExactMirrorImagesForAThousa
   }
 }
 
-// Of two points one is solved first, and which one is not the mirror image's. Stated bounds for the mean over
+// One of two points is solved first, and which one is not the mirror image's. Stated bounds for the mean over
 // 1000 falls, each with its slide and rest: a sixteenth of the slop, which is what a contact of sequential
 // impulses leaves open anyway, and a quarter of it for the soft step, which has more contacts to choose from.
 TYPED_TEST(MirrorTest, TwoPointContactsDriftByLessThanAPartOfTheSlopInTheMean) {

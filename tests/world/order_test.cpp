@@ -40,7 +40,7 @@ std::vector<Actor<S>> actorsOf(std::uint64_t seed) {
   const std::uint32_t count = 10 + random.below(15);
   for (std::uint32_t i = 0; i < count; ++i) {
     Actor<S> actor;
-    // With gaps.
+    // The slots have gaps.
     actor.slot = 2 + i + i / 4;
     actor.body = random.oneIn(8) ? Body<S>::kinematic() : Body<S>();
     actor.position = {random.number<S>(-7, 7), random.number<S>(-4, 8)};

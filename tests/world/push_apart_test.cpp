@@ -56,7 +56,7 @@ TYPED_TEST(PushApartTest, TwoBoxesThatOverlapAreAtRestOnceApart) {
   }
 }
 
-// Of masses 1 and 1000 in turn, nine on one place half, in a row.
+// The masses are 1 and 1000 in turn, nine on one place half, in a row.
 TYPED_TEST(PushApartTest, ARowOfBodiesThatOverlapIsAtRestOnceApart) {
   using S = TypeParam;
   for (const Method& method : kMethods) {

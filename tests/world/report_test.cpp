@@ -18,7 +18,7 @@
 namespace samestep {
 namespace {
 
-/// What is told of one contact.
+/// Report of one contact.
 template <class S>
 struct Told {
   Vector<S> impulse, normal;
@@ -39,7 +39,7 @@ class ReportTest : public ::testing::Test {
   static double unitOf(const Method& method) {
     return !kIsFixed<S> ? 0x1p-36 : method.precision == ContactPrecision::fast ? 0x1p-16 : 0x1p-24;
   }
-  /// Of the only contact there is, of the first of its bodies against the second.
+  /// Report of the only contact there is, of the first of its bodies against the second.
   static Told<S> visited(Space<S>& space, BodyId first) {
     Told<S> told;
     space.eachArbiter([&](Arbiter<S>& arbiter) {
@@ -90,7 +90,7 @@ TYPED_TEST(ReportTest, ABallThatSpinsWithoutFrictionTellsItsWeightAndLiesOnTheFl
   }
 }
 
-// What is rounded turns below its point, and its ends go where the body goes.
+// A rounded shape turns below its point, and its ends go where the body goes.
 TYPED_TEST(ReportTest, ACapsuleThatSpinsTellsTheDepthsOfItsEnds) {
   using S = TypeParam;
   for (const Method& method : kMethods) {

@@ -144,7 +144,7 @@ TYPED_TEST(SeamTest, ABodyOfBoxesSlidesOverSeams) {
   }
 }
 
-// Of tiles that are a body each, kinematic, at rest or going the same way.
+// The floor is of tiles that are a body each, kinematic, at rest or going the same way.
 TYPED_TEST(SeamTest, AWalkerArrivesOnBodiesThatMoveAlike) {
   using S = TypeParam;
   for (const Solving& solving : kAll) {

@@ -438,7 +438,7 @@ struct RestingContact {
   }
 };
 
-/// What ends the contact of two static discs.
+/// Change that ends the contact of two static discs.
 template <Scalar S>
 struct EndOfRest {
   const char* name;
@@ -568,7 +568,7 @@ TYPED_TEST(HandlersTest, PairsAreToldOfInTheOrderOfTheirShapes) {
                                         "d.postSolve(0,2)", "d.postSolve(1,2)"));
 }
 
-// What a handler does for itself it can also pass on.
+// A handler that does something itself can also pass it on.
 TYPED_TEST(HandlersTest, AHandlerMayAskTheWildcards) {
   using S = TypeParam;
   this->bindWildcard("w1", 1).beginAnswer = false;
@@ -696,7 +696,7 @@ TYPED_TEST(HandlersTest, ASensorMadeOrUnmadeInContactGoesOnTouching) {
   }
 }
 
-// What overlaps newly is told with the next step that takes time.
+// Shapes that overlap newly are told of with the next step that takes time.
 TYPED_TEST(HandlersTest, AStepOfNoTimeDoesNothing) {
   using S = TypeParam;
   this->bindPair("h", 1, 2);

@@ -71,8 +71,8 @@ TYPED_TEST(SpaceMassTest, AShapeThatGetsMassTakesThePlaceOfAMassSetByHandAndLeav
   this->expectWeight(id, S(0), S(0));
 }
 
-// Whatever happens to its shapes: a body that is of another type meanwhile ends with the mass of one that was
-// dynamic all along.
+// A body that is of another type meanwhile ends with the mass of one that was dynamic all along, whatever
+// happens to its shapes.
 TYPED_TEST(SpaceMassTest, ChangesOfShapesCountWhateverTheTypeOfTheBodyMeanwhile) {
   using S = TypeParam;
   using Fixture = TestFixture;

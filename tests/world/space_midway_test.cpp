@@ -13,7 +13,7 @@
 namespace samestep {
 namespace {
 
-/// What throws, or wants the call to end, when it is asked for the nth time.
+/// Trap that throws, or wants the call to end, when it is asked for the nth time.
 struct Trap {
   int left = -1;
   bool sprung = false;
@@ -231,7 +231,7 @@ TYPED_TEST(SpaceMidwayTest, ASpaceDoesNoMoreWorkThanItMay) {
   EXPECT_THROW(space.step(kTick<S>), Interrupted);
   expectUnusable(space);
   space.restore(after);
-  // Whatever is left over is not enough.
+  // The work left over is not enough.
   EXPECT_THROW(space.step(kTick<S>), Interrupted);
   EXPECT_TRUE(space.isUsable());
   EXPECT_EQ(space.hash(), model.hash());

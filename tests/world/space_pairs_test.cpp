@@ -52,7 +52,7 @@ TYPED_TEST(SpacePairsTest, AStepThatFindsMoreIsRefusedBeforeAnythingChanges) {
   }
 }
 
-// Where shapes are asked about is where their bodies are.
+// Shapes are asked about where their bodies are.
 TYPED_TEST(SpacePairsTest, AfterARefusalQueriesFindWhatIsThere) {
   using S = TypeParam;
   for (const SolverKind solver : {SolverKind::softStep, SolverKind::sequentialImpulses}) {

@@ -138,7 +138,7 @@ TYPED_TEST(SpaceRemovalTest, EachOfThousandsOfHandlersIsFound) {
     ++*static_cast<std::uint32_t*>(data);
     return false;
   };
-  // From the last to the first, so that each goes before all others.
+  // They go from the last to the first, so that each goes before all others.
   for (std::uint32_t i = kTypes * kTypes; i-- > 0;) {
     handler.data = &called[i];
     space.registerHandler(i + 1, handler);

@@ -42,7 +42,7 @@ class SpaceSaveTest : public ::testing::Test {
     body.setVelocityFunc(1);
     space.add(circleShape(space.add(body), S(1)));
   }
-  /// What a game does between steps, by the number of the step: it adds, removes and pushes.
+  /// Plays what a game does between steps, by the number of the step: it adds, removes and pushes.
   static void play(Space<S>& space, int step) {
     if (step % 7 == 3) addDisc<S>(space, {S(step % 5), S(6)}, ratio<S>(1, 2), S(1));
     if (step % 11 == 5) {
@@ -92,7 +92,7 @@ TYPED_TEST(SpaceSaveTest, RestoredAtEachTickItContinuesAsTheOriginal) {
     }
     Space<TypeParam> other;
     this->wire(other);
-    fillAtRandom(other, seed + 77);  // What was there is gone after a restore.
+    fillAtRandom(other, seed + 77);  // The world that was there is gone after a restore.
     other.step(kTick<TypeParam>);
     for (int step = 0; step < kSteps; step += 1 + static_cast<int>(seed)) {
       Space<TypeParam>& into = step % 2 == 0 ? other : original;

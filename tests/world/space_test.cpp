@@ -626,7 +626,7 @@ TYPED_TEST(SpaceTest, WhileAVisitRunsNothingIsAddedRemovedOrReplaced) {
   space.eachArbiter(bodyOf(space, shape), check);
   EXPECT_EQ(visits, 3 + 2 + 1 + 1);
   EXPECT_FALSE(space.isLocked());
-  // What is neither geometry nor mass may change.
+  // Values that are neither geometry nor mass may change.
   space.eachBody([&](const Body<S>&) { space.change(shape, [](Shape<S>& s) { s.setFriction(S(1)); }); });
   EXPECT_EQ(space.shape(shape).friction(), S(1));
 }
@@ -897,7 +897,7 @@ TYPED_TEST(SpaceTest, PostStepCallbacksOfARefusedStepAreDropped) {
     const ShapeId a = addDisc<S>(space, {}, S(1), S(1));
     addDisc<S>(space, {S(1), S(0)}, S(1), S(1));
     space.body(bodyOf(space, a)).setPositionFunc(1);
-    leaveWaiting(space, log);  // From before: this one stays.
+    leaveWaiting(space, log);  // This one was there before and stays.
     space.setMaxPairs(0);
     EXPECT_THROW(space.step(kTick<S>), TooManyPairs);
     EXPECT_TRUE(log.keys.empty());
@@ -1030,7 +1030,7 @@ TYPED_TEST(SpaceTest, PositionAndVelocityFunctionsReplaceTheBuiltInOnes) {
   }
   space.step(S(1) / S(8));
 
-  // By rising body; a static body is not asked.
+  // The order is by rising body; a static body is not asked.
   EXPECT_EQ(seen.order, (std::vector<std::uint64_t>{0, 2, 10, 12}));
   EXPECT_EQ(space.body(ids[0]).position(), Vector<S>(S(1), S(0)));
   EXPECT_EQ(space.body(ids[0]).velocity(), Vector<S>(S(4), S(1)));
@@ -1102,7 +1102,7 @@ TYPED_TEST(SpaceTest, FunctionsThatLeaveTheRangeAreHeldTooNotThrown) {
   EXPECT_EQ(space.body(id).velocity(), Vector<S>(S(0), -kMaxSpeed<S>));
   ASSERT_EQ(space.rangeEvents().size(), 1u);
   EXPECT_EQ(space.rangeEvents()[0].held, Body<S>::kHeldAtBorder | Body<S>::kHeldSpeed);
-  // By hand, after the step, they are refused again.
+  // A value set by hand, after the step, is refused again.
   space.body(id).setVelocity({S(5), S(0)});
   EXPECT_THROW(space.body(id).updatePosition(S(1)), IllegalBody);
 }

@@ -66,7 +66,7 @@ void fill(Space<S>& space, const Kind& kind, std::string& events) {
     };
     handler.preSolve = [](Arbiter<S>& arbiter, Space<S>& world, void* data) {
       tell(arbiter, 'p', data);
-      // What a callback changes, those after it see.
+      // Callbacks see what those before them changed.
       Body<S>& body = world.body(arbiter.bodyA());
       if (body.isDynamic()) body.setVelocity(body.velocity() * ratio<S>(255, 256));
       return arbiter.shapeB().index % 7 != 0;

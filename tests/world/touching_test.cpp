@@ -25,7 +25,7 @@ S deepest(const Arbiter<S>& arbiter) {
   return least;
 }
 
-/// Which functions a handler has.
+/// Functions that a handler has.
 enum class Asked { all, postSolveAndSeparate };
 
 template <Scalar S>
@@ -120,7 +120,7 @@ TYPED_TEST(TouchingTest, AnImpulseBeforeAnOverlapIsTold) {
   EXPECT_EQ(this->visited(space), 0);
 }
 
-// Whoever may refuse is asked when the shapes touch, and before anything has pushed.
+// A handler that may refuse is asked when the shapes touch, and before anything has pushed.
 TYPED_TEST(TouchingTest, BeginIsAskedInTouchAndBeforeAnImpulse) {
   using S = TypeParam;
   struct Seen {
@@ -190,8 +190,8 @@ TYPED_TEST(TouchingTest, AOneWayPlatformHoldsWhoClearedItByMillimetres) {
   }
 }
 
-// Of a heap of everything: what is begun touches, what is visited touches or was pushed, and each begin has
-// its separate.
+// A heap of everything keeps this: what is begun touches, what is visited touches or was pushed, and each
+// begin has its separate.
 TYPED_TEST(TouchingTest, AllThatIsToldOfAHeapTouches) {
   using S = TypeParam;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
