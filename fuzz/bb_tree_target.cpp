@@ -68,14 +68,14 @@ class Indexes {
 
   void compare(const BB<S>& box, IndexKey leftOut) {
     const auto pairsOf = [&](SpatialIndex<S>& index) {
-      std::vector<KeyPair> pairs;
+      std::vector<IndexKeyPair> pairs;
       index.reindexQuery(
           [](void* to, IndexKey a, IndexKey b) {
-            static_cast<std::vector<KeyPair>*>(to)->push_back({a, b});
+            static_cast<std::vector<IndexKeyPair>*>(to)->push_back({a, b});
           },
           &pairs);
       expect(std::is_sorted(pairs.begin(), pairs.end()), "pairs come by rising keys");
-      std::erase_if(pairs, [&](const KeyPair& pair) {
+      std::erase_if(pairs, [&](const IndexKeyPair& pair) {
         return !intersects(model_.objects[pair.a].box, model_.objects[pair.b].box);
       });
       return pairs;
@@ -84,14 +84,14 @@ class Indexes {
     expect(pairsOf(restingTree_) == pairsOf(restingBrute_), "so does a static tree");
     // A tree beside a static index of another kind.
     const auto mixedPairs = [&](const SpatialIndex<S>& index, const SpatialIndex<S>& resting) {
-      std::vector<KeyPair> pairs;
+      std::vector<IndexKeyPair> pairs;
       index.collideStatic(
           resting,
           [](void* to, IndexKey a, IndexKey b) {
-            static_cast<std::vector<KeyPair>*>(to)->push_back({a, b});
+            static_cast<std::vector<IndexKeyPair>*>(to)->push_back({a, b});
           },
           &pairs);
-      std::erase_if(pairs, [&](const KeyPair& pair) {
+      std::erase_if(pairs, [&](const IndexKeyPair& pair) {
         return !intersects(model_.objects[pair.a].box, model_.objects[pair.b].box);
       });
       return pairs;
@@ -174,7 +174,7 @@ class Trees {
     const std::uint64_t most = before % 2 == 0 ? before : before / 2;
     const bool noMore = moving_.updatePairs(most);
     moving_.updatePairs();
-    const std::vector<KeyPair>& pairs = moving_.pairs();
+    const std::vector<IndexKeyPair>& pairs = moving_.pairs();
     expect(noMore == (pairs.size() <= most), "a search for so many pairs ends where there are more");
     expect(std::is_sorted(pairs.begin(), pairs.end()), "pairs are sorted");
     expect(std::adjacent_find(pairs.begin(), pairs.end()) == pairs.end(), "no pair comes twice");
@@ -196,12 +196,12 @@ class Trees {
       for (int j = i + 1; j < count; ++j) {
         const Inflated& second = present[j];
         if ((first.resting && second.resting) || !intersects(first.box, second.box)) continue;
-        const KeyPair wanted{first.key, second.key};
+        const IndexKeyPair wanted{first.key, second.key};
         while (pair != pairs.end() && *pair < wanted) ++pair;
         expect(pair != pairs.end() && *pair == wanted, "boxes that overlap are a pair");
       }
     }
-    for (const KeyPair& each : pairs) {
+    for (const IndexKeyPair& each : pairs) {
       expect(each.a < each.b && each.b < kKeys, "a pair names two objects, the lower first");
     }
   }
@@ -243,7 +243,7 @@ class Trees {
   Model<S>& model() { return model_; }
   bool isValid() const { return moving_.boxes().valid() && resting_.boxes().valid(); }
   std::uint32_t count() const { return moving_.count() + resting_.count(); }
-  const std::vector<KeyPair>& pairs() const { return moving_.pairs(); }
+  const std::vector<IndexKeyPair>& pairs() const { return moving_.pairs(); }
 
  private:
   BBTree<S> resting_;

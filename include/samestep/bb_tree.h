@@ -62,7 +62,7 @@ class BBTree final : public SpatialIndex<S> {
   bool updatePairs(std::uint64_t most = std::numeric_limits<std::uint64_t>::max(), Budget* budget = nullptr);
   /// Candidates as of the last updatePairs, sorted: every pair whose tight boxes, both grown by the margin,
   /// overlap, and some more. An object removed since may still be named.
-  const std::vector<KeyPair>& pairs() const { return pairs_; }
+  const std::vector<IndexKeyPair>& pairs() const { return pairs_; }
 
   /// Replaces `keys` by the objects that may contain the point or touch the box or the segment of the given
   /// half thickness (metres, >= 0), by rising key.
@@ -109,7 +109,7 @@ class BBTree final : public SpatialIndex<S> {
   void sortFound();
   void mergeFound();
   void clearChanged();
-  std::vector<KeyPair> pairsAfresh() const;
+  std::vector<IndexKeyPair> pairsAfresh() const;
   BBTree* staticTree() const;
 
   BoxTree tree_;
@@ -119,7 +119,7 @@ class BBTree final : public SpatialIndex<S> {
   /// Changes of each key: kMovedHere, kMovedInStatic.
   std::vector<std::uint8_t> changes_;
   std::vector<IndexKey> changed_;  ///< The keys with kMovedHere, each once.
-  std::vector<KeyPair> pairs_;
+  std::vector<IndexKeyPair> pairs_;
   std::vector<std::uint64_t> found_;    ///< Scratch: new pairs, packed.
   std::vector<std::uint64_t> sorting_;  ///< Scratch.
   VelocityFunc<S> velocityOf_ = nullptr;

@@ -20,12 +20,12 @@ using IndexKey = std::uint32_t;
 inline constexpr IndexKey kNoKey = 0xffffffffu;
 
 /// Two objects whose boxes may overlap, lower key first; ordered by lower, then higher key.
-struct KeyPair {
+struct IndexKeyPair {
   IndexKey a;
   IndexKey b;
 
-  friend constexpr bool operator==(const KeyPair&, const KeyPair&) = default;
-  friend constexpr auto operator<=>(const KeyPair&, const KeyPair&) = default;
+  friend constexpr bool operator==(const IndexKeyPair&, const IndexKeyPair&) = default;
+  friend constexpr auto operator<=>(const IndexKeyPair&, const IndexKeyPair&) = default;
 };
 
 /// The tight box of an object, world coordinates, metres.

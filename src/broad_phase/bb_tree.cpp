@@ -178,7 +178,7 @@ void BBTree<S>::copyFrom(const BBTree& other) {
 template <Scalar S>
 std::uint64_t BBTree<S>::bytes() const {
   return tree_.bytes() + rooms_.size() * sizeof(BB<S>) + changes_.size() +
-         changed_.size() * sizeof(IndexKey) + pairs_.size() * sizeof(KeyPair);
+         changed_.size() * sizeof(IndexKey) + pairs_.size() * sizeof(IndexKeyPair);
 }
 
 template <Scalar S>
@@ -219,7 +219,7 @@ bool BBTree<S>::updatePairs(std::uint64_t most, Budget* budget) {
 template <Scalar S>
 void BBTree<S>::dropChanged() {
   std::size_t kept = 0;
-  for (const KeyPair pair : pairs_) {
+  for (const IndexKeyPair pair : pairs_) {
     pairs_[kept] = pair;
     kept += (changes_[pair.a] | changes_[pair.b]) == 0 ? 1 : 0;
   }
@@ -385,17 +385,17 @@ void BBTree<S>::reindexQuery(QueryFunc found, void* context) {
   const bool cached = this->dynamicIndex() == nullptr && (resting == nullptr || staticTree() != nullptr);
   if (cached) {
     updatePairs();
-    for (const KeyPair& pair : pairs_) found(context, pair.a, pair.b);
+    for (const IndexKeyPair& pair : pairs_) found(context, pair.a, pair.b);
     return;
   }
-  for (const KeyPair& pair : pairsAfresh()) found(context, pair.a, pair.b);
+  for (const IndexKeyPair& pair : pairsAfresh()) found(context, pair.a, pair.b);
 }
 
 // This serves a static tree, whose changes are its dynamic tree's to take up, and a static index that is no
 // tree.
 template <Scalar S>
-std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
-  std::vector<KeyPair> all;
+std::vector<IndexKeyPair> BBTree<S>::pairsAfresh() const {
+  std::vector<IndexKeyPair> all;
   for (IndexKey key = 0; key < tree_.keyEnd(); ++key) {
     if (!tree_.contains(key)) continue;
     tree_.queryAround(key, [&all, key](IndexKey other) {
@@ -404,7 +404,7 @@ std::vector<KeyPair> BBTree<S>::pairsAfresh() const {
   }
   if (this->staticIndex() != nullptr) {
     const auto add = [](void* to, IndexKey a, IndexKey b) {
-      static_cast<std::vector<KeyPair>*>(to)->push_back({std::min(a, b), std::max(a, b)});
+      static_cast<std::vector<IndexKeyPair>*>(to)->push_back({std::min(a, b), std::max(a, b)});
     };
     this->collideStatic(*this->staticIndex(), add, &all);
   }

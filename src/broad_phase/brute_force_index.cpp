@@ -76,9 +76,9 @@ void BruteForceIndex<S>::query(IndexKey object, const BB<S>& box, QueryFunc foun
 template <Scalar S>
 void BruteForceIndex<S>::reindexQuery(QueryFunc found, void* context) {
   reindex();
-  std::vector<KeyPair> pairs;
+  std::vector<IndexKeyPair> pairs;
   const auto add = [](void* to, IndexKey a, IndexKey b) {
-    static_cast<std::vector<KeyPair>*>(to)->push_back({std::min(a, b), std::max(a, b)});
+    static_cast<std::vector<IndexKeyPair>*>(to)->push_back({std::min(a, b), std::max(a, b)});
   };
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     for (std::size_t j = i + 1; j < entries_.size(); ++j) {
@@ -88,7 +88,7 @@ void BruteForceIndex<S>::reindexQuery(QueryFunc found, void* context) {
   if (this->staticIndex() != nullptr) this->collideStatic(*this->staticIndex(), add, &pairs);
   // total order: pairs of integers
   std::sort(pairs.begin(), pairs.end());
-  for (const KeyPair& pair : pairs) found(context, pair.a, pair.b);
+  for (const IndexKeyPair& pair : pairs) found(context, pair.a, pair.b);
 }
 
 #define SAMESTEP_EACH_SCALAR template class BruteForceIndex<S>;

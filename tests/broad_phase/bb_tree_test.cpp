@@ -18,7 +18,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-using Pairs = std::vector<KeyPair>;
+using Pairs = std::vector<IndexKeyPair>;
 using Keys = std::vector<IndexKey>;
 
 template <Scalar S>
@@ -110,7 +110,7 @@ struct Trees {
   /// Pairs that the Space makes of the candidates.
   Pairs filtered(const Crowd<S>& crowd) const {
     Pairs pairs;
-    for (const KeyPair& pair : moving.pairs()) {
+    for (const IndexKeyPair& pair : moving.pairs()) {
       if (crowd.touches(pair.a, pair.b)) pairs.push_back(pair);
     }
     return pairs;
@@ -222,7 +222,7 @@ TYPED_TEST(BBTreeTest, TheMarginOfBothBoxesCountsForEveryCandidate) {
 
   tree.setMargin(ratio<S>(3, 2));
   tree.updatePairs();
-  EXPECT_THAT(tree.pairs(), ElementsAre(KeyPair{0, 1}));
+  EXPECT_THAT(tree.pairs(), ElementsAre(IndexKeyPair{0, 1}));
 
   tree.setMargin(S(1));
   tree.updatePairs();
@@ -321,7 +321,7 @@ TYPED_TEST(BBTreeTest, PairsOfARemovedObjectGoWithTheNextUpdate) {
   tree.remove(1);
   tree.updatePairs();
 
-  EXPECT_THAT(tree.pairs(), ElementsAre(KeyPair{0, 2}));
+  EXPECT_THAT(tree.pairs(), ElementsAre(IndexKeyPair{0, 2}));
 }
 
 TYPED_TEST(BBTreeTest, AKeyUsedAgainBetweenUpdatesLosesItsOldPairs) {
@@ -351,7 +351,7 @@ TYPED_TEST(BBTreeTest, AnObjectMayGoFromTheDynamicToTheStaticTree) {
   }
   moving.updatePairs();
 
-  EXPECT_THAT(moving.pairs(), ElementsAre(KeyPair{0, 1}, KeyPair{1, 2}));
+  EXPECT_THAT(moving.pairs(), ElementsAre(IndexKeyPair{0, 1}, IndexKeyPair{1, 2}));
 }
 
 TYPED_TEST(BBTreeTest, BoxesBeyondTheGridAreStillCandidates) {
@@ -363,7 +363,7 @@ TYPED_TEST(BBTreeTest, BoxesBeyondTheGridAreStillCandidates) {
   tree.update(2, box<S>(-far - 1, -far - 1, -far, -far), {S(1), S(1)});
   tree.updatePairs();
 
-  EXPECT_THAT(tree.pairs(), ElementsAre(KeyPair{0, 1}));
+  EXPECT_THAT(tree.pairs(), ElementsAre(IndexKeyPair{0, 1}));
   Keys keys;
   tree.collectAlong({S(0), S(0)}, {S(far), S(far)}, S(0), keys);
   EXPECT_THAT(keys, ElementsAre(0, 1));
@@ -389,7 +389,7 @@ TYPED_TEST(BBTreeTest, ABoxOfWhatIsNoNumberOverlapsEverything) {
   tree.update(1, box<S>(3, 3, 4, 4));
   tree.updatePairs();
 
-  EXPECT_THAT(tree.pairs(), ElementsAre(KeyPair{0, 1}));
+  EXPECT_THAT(tree.pairs(), ElementsAre(IndexKeyPair{0, 1}));
 }
 
 TYPED_TEST(BBTreeTest, QueriesHoldEveryHitByRisingKey) {
@@ -453,7 +453,7 @@ TYPED_TEST(BBTreeTest, ReindexQueryHoldsThePairsOfBruteForceInTheSameOrder) {
     Pairs candidates, exact;
     tree.reindexQuery(note, &candidates);
     plain.reindexQuery(note, &exact);
-    std::erase_if(candidates, [&crowd](const KeyPair& pair) { return !crowd.touches(pair.a, pair.b); });
+    std::erase_if(candidates, [&crowd](const IndexKeyPair& pair) { return !crowd.touches(pair.a, pair.b); });
 
     ASSERT_EQ(candidates, exact);
     for (auto& member : crowd.members) member.box = offset(member.box, member.velocity * ratio<S>(1, 64));

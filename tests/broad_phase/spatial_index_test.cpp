@@ -25,7 +25,7 @@ struct World {
   static BB<S> boxOf(void* world, IndexKey object) { return static_cast<World*>(world)->boxes[object]; }
 };
 
-using Pairs = std::vector<KeyPair>;
+using Pairs = std::vector<IndexKeyPair>;
 void note(void* pairs, IndexKey a, IndexKey b) { static_cast<Pairs*>(pairs)->push_back({a, b}); }
 
 template <Scalar S>
@@ -98,7 +98,7 @@ TYPED_TEST(SpatialIndexTest, QueryFindsOverlapsOtherThanTheObject) {
 
   Pairs calls;
   index.query(0, box<S>(-1, -1, 1, 1), note, &calls);
-  EXPECT_THAT(calls, ElementsAre(KeyPair{0, 1}));
+  EXPECT_THAT(calls, ElementsAre(IndexKeyPair{0, 1}));
 }
 
 TYPED_TEST(SpatialIndexTest, ReindexObjectAndReindexTakeUpMoves) {
@@ -129,7 +129,7 @@ TYPED_TEST(SpatialIndexTest, ReindexQueryReportsEachPairOnceInOrder) {
 
   index.reindexQuery(note, &pairs);
 
-  EXPECT_THAT(pairs, ElementsAre(KeyPair{0, 2}, KeyPair{0, 3}, KeyPair{2, 3}));
+  EXPECT_THAT(pairs, ElementsAre(IndexKeyPair{0, 2}, IndexKeyPair{0, 3}, IndexKeyPair{2, 3}));
 }
 
 TYPED_TEST(SpatialIndexTest, ReindexQueryPairsWithTheStaticIndexButNotWithinIt) {
@@ -142,11 +142,12 @@ TYPED_TEST(SpatialIndexTest, ReindexQueryPairsWithTheStaticIndexButNotWithinIt) 
   Pairs pairs;
 
   index.reindexQuery(note, &pairs);
-  EXPECT_THAT(pairs, ElementsAre(KeyPair{0, 1}, KeyPair{0, 3}, KeyPair{1, 2}, KeyPair{1, 3}, KeyPair{2, 3}));
+  EXPECT_THAT(pairs, ElementsAre(IndexKeyPair{0, 1}, IndexKeyPair{0, 3}, IndexKeyPair{1, 2},
+                                 IndexKeyPair{1, 3}, IndexKeyPair{2, 3}));
 
   pairs.clear();
   resting.reindexQuery(note, &pairs);
-  EXPECT_THAT(pairs, ElementsAre(KeyPair{0, 2}));
+  EXPECT_THAT(pairs, ElementsAre(IndexKeyPair{0, 2}));
 }
 
 TYPED_TEST(SpatialIndexTest, CollideStaticReportsByRisingKeys) {
@@ -163,7 +164,8 @@ TYPED_TEST(SpatialIndexTest, CollideStaticReportsByRisingKeys) {
 
   index.collideStatic(resting, note, &pairs);
 
-  EXPECT_THAT(pairs, ElementsAre(KeyPair{1, 0}, KeyPair{1, 2}, KeyPair{3, 0}, KeyPair{3, 2}));
+  EXPECT_THAT(pairs,
+              ElementsAre(IndexKeyPair{1, 0}, IndexKeyPair{1, 2}, IndexKeyPair{3, 0}, IndexKeyPair{3, 2}));
 }
 
 TYPED_TEST(SpatialIndexTest, AStaticIndexWithTwoDynamicOnesThrowsAttachedStaticIndex) {
@@ -198,7 +200,7 @@ TYPED_TEST(SpatialIndexTest, DestroyingOneIndexPartsItFromTheOther) {
   index.reindexQuery(note, &pairs);
 
   EXPECT_EQ(index.staticIndex(), nullptr);
-  EXPECT_THAT(pairs, ElementsAre(KeyPair{1, 2}));
+  EXPECT_THAT(pairs, ElementsAre(IndexKeyPair{1, 2}));
 }
 
 TYPED_TEST(SpatialIndexTest, WithoutABoxFunctionInsertThrowsMissingCallback) {
@@ -267,7 +269,7 @@ TEST(MixedIndexTest, ATreePairsWithAStaticIndexThatIsNoTree) {
 
   tree.reindexQuery(note, &pairs);
 
-  EXPECT_THAT(pairs, ElementsAre(KeyPair{0, 1}, KeyPair{0, 2}, KeyPair{1, 2}));
+  EXPECT_THAT(pairs, ElementsAre(IndexKeyPair{0, 1}, IndexKeyPair{0, 2}, IndexKeyPair{1, 2}));
 }
 
 TEST(MixedIndexTest, AnIndexThatIsNoTreePairsWithAStaticTree) {
@@ -281,7 +283,7 @@ TEST(MixedIndexTest, AnIndexThatIsNoTreePairsWithAStaticTree) {
 
   index.reindexQuery(note, &pairs);
 
-  EXPECT_THAT(pairs, ElementsAre(KeyPair{0, 1}, KeyPair{0, 2}, KeyPair{1, 2}));
+  EXPECT_THAT(pairs, ElementsAre(IndexKeyPair{0, 1}, IndexKeyPair{0, 2}, IndexKeyPair{1, 2}));
 }
 
 }  // namespace

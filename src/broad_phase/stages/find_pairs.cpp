@@ -51,7 +51,7 @@ std::uint32_t FindPairs<S>::mergePairs(StepContext<S>& step) {
   const Derived<S>& derived = step.derived;
   const S margin = step.pairMargin();
   const std::uint32_t persistence = step.state.settings.collisionPersistence;
-  const std::vector<KeyPair>& candidates = derived.dynamicTree.pairs();
+  const std::vector<IndexKeyPair>& candidates = derived.dynamicTree.pairs();
   overlapping_.resize(step.state.pairs.size() + candidates.size());
   newPairs_.clear();
   pairRuns_.clear();
