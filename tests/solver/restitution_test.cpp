@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "solver/soft_step/restitution.h"
 
+#include <tuple>
+
 #include <gtest/gtest.h>
 
 #include "support/random.h"
@@ -47,6 +49,12 @@ class RestitutionTest : public ::testing::Test {
       point.armB = random.number<S>(-1, 1);
       point.spinA = a.momentPerMass * point.armA * point.shareA;
       point.spinB = b.momentPerMass * point.armB * (S(1) - point.shareA);
+      point.tangentArmA = a.mass == S(0) ? S(0) : random.number<S>(-1, 1);
+      point.tangentArmB = random.number<S>(-1, 1);
+      point.tangentSpinA = a.momentPerMass * point.tangentArmA * point.shareA;
+      point.tangentSpinB = b.momentPerMass * point.tangentArmB * (S(1) - point.shareA);
+      point.friction = random.oneIn(2) ? S(0) : random.number<S>(0, 1);
+      point.pair = static_cast<std::uint32_t>(i);
       point.elasticity = random.oneIn(3) ? S(1) : random.number<S>(0, 1);
       if (point.elasticity < S(0)) point.elasticity = -point.elasticity;
     }
@@ -62,6 +70,7 @@ TYPED_TEST(RestitutionTest, EnergyNeverGrowsWithAnyNumberOfPointsOfAnyElasticity
     Random random(seed);
     this->scatter(random);
     const double before = this->energy();
+    this->restitution_.markBouncing();
     this->restitution_.solve();
     EXPECT_LE(this->energy(), before * (1 + 0x1p-20)) << "seed " << seed;
     for (const auto& point : this->restitution_.points) bounced += point.rebound > TypeParam(0) ? 1 : 0;
@@ -72,7 +81,12 @@ TYPED_TEST(RestitutionTest, EnergyNeverGrowsWithAnyNumberOfPointsOfAnyElasticity
 // Two points of a wide body against a wall, in both orders: it leaves as fast as it came and does not turn.
 TYPED_TEST(RestitutionTest, TheOrderOfPointsMakesNoDifferenceToABodyThatLiesOnThem) {
   using S = TypeParam;
-  for (const bool turned : {false, true}) {
+  for (const auto& [turned, together, friction] : {std::tuple(false, true, S(0)),
+                                                   {true, true, S(0)},
+                                                   {false, true, S(1)},
+                                                   {true, true, S(1)},
+                                                   {false, false, S(0)},
+                                                   {true, false, S(0)}}) {
     Restitution<S>& restitution = this->restitution_;
     restitution.clear(2);
     BounceBody<S>& body = restitution.bodies[1];
@@ -85,8 +99,13 @@ TYPED_TEST(RestitutionTest, TheOrderOfPointsMakesNoDifferenceToABodyThatLiesOnTh
       point.normal = {S(0), S(1)};
       point.armB = left ? ratio<S>(-1, 8) : ratio<S>(1, 2);
       point.spinB = S(6) * point.armB;
+      point.tangentArmB = ratio<S>(3, 2);
+      point.tangentSpinB = S(6) * point.tangentArmB;
+      point.friction = friction;
+      point.pair = together ? 0 : static_cast<std::uint32_t>(restitution.points.size());
       point.elasticity = S(1);
     }
+    restitution.markBouncing();
     restitution.solve();
     EXPECT_NEAR(static_cast<double>(body.velocity[1]), 6, 1e-6);
     EXPECT_NEAR(static_cast<double>(body.velocity[2]), 0, 1e-6);

@@ -2,6 +2,7 @@
 // What bounces leaves as it came, however many points and pairs hold it.
 #include <samestep/space.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -25,13 +26,41 @@ class BounceTest : public ::testing::Test {
     space.add(floor);
   }
   static BodyId addElastic(Space<S>& space, const Vector<S>& at, const Vector<S>& velocity, S elasticity,
-                           S mass = S(1), S friction = S(0)) {
-    const ShapeId box = addBox<S>(space, at, S(1), S(1), mass, velocity);
+                           S mass = S(1), S friction = S(0), S height = S(1)) {
+    const ShapeId box = addBox<S>(space, at, S(1), height, mass, velocity);
     space.change(box, [&](Shape<S>& shape) {
       shape.setElasticity(elasticity);
       shape.setFriction(friction);
     });
     return bodyOf(space, box);
+  }
+  /// 14 bodies of all shapes that move anyhow between four walls, without gravity.
+  static std::vector<BodyId> addClosedBox(Space<S>& space, S friction) {
+    Random random(7);
+    const auto dress = [&](Shape<S>& shape) {
+      shape.setElasticity(S(1));
+      shape.setFriction(friction);
+      space.add(shape);
+    };
+    for (const BB<S>& wall : {BB<S>{S(-8), S(-8), S(8), S(-6)}, BB<S>{S(-8), S(6), S(8), S(8)},
+                              BB<S>{S(-8), S(-8), S(-6), S(8)}, BB<S>{S(6), S(-8), S(8), S(8)}}) {
+      Shape<S> shape = boxShape<S>(space.add(Body<S>::fixedInPlace()), wall);
+      dress(shape);
+    }
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 14; ++i) {
+      Body<S> body;
+      body.setPosition({S(i % 4 * 3 - 4), S(i / 4 * 3 - 4)});
+      body.setVelocity({random.number<S>(-6, 6), random.number<S>(-6, 6)});
+      body.setAngularVelocity(random.number<S>(-3, 3));
+      const BodyId id = bodies.emplace_back(space.add(body));
+      Shape<S> shape = i % 3 == 0   ? circleShape(id, ratio<S>(1, 2))
+                       : i % 3 == 1 ? boxShape(id, S(1), S(2))
+                                    : segmentShape(id, {S(-1), S(0)}, {S(1), S(0)}, ratio<S>(1, 4));
+      shape.setMass(S(1 + i % 4));
+      dress(shape);
+    }
+    return bodies;
   }
   static void stepFor(Space<S>& space, int steps) {
     for (int i = 0; i < steps; ++i) space.step(kTick<S>);
@@ -69,13 +98,37 @@ TYPED_TEST(BounceTest, ABoxThatFallsFlatLeavesAsFastAsItsElasticitySaysWithoutSp
   for (const ContactPrecision precision : this->kPrecisions) {
     for (const Floor& floor : floors) {
       for (const S elasticity : {S(1), ratio<S>(1, 2), ratio<S>(1, 4)}) {
-        Space<S> space;
-        space.setPrecision(precision);
-        for (const auto& [from, to] : floor.boxes) this->addFloor(space, from, to);
-        const BodyId box = this->addElastic(space, {S(0), S(1)}, {S(0), S(-6)}, elasticity);
-        this->stepFor(space, 40);
-        this->expectLeaves(space, box, 6 * static_cast<double>(elasticity), floor.name);
+        for (const S friction : {S(0), ratio<S>(1, 4), S(1)}) {
+          for (const S height : {S(1), S(3)}) {
+            Space<S> space;
+            space.setPrecision(precision);
+            for (const auto& [from, to] : floor.boxes) this->addFloor(space, from, to);
+            const Vector<S> at(S(0), (S(1) + height) * ratio<S>(1, 2));
+            const BodyId box = this->addElastic(space, at, {S(0), S(-6)}, elasticity, S(1), friction, height);
+            this->stepFor(space, 40);
+            this->expectLeaves(space, box, 6 * static_cast<double>(elasticity), floor.name);
+          }
+        }
       }
+    }
+  }
+}
+
+TYPED_TEST(BounceTest, EnergyNeverGrowsAmongManyElasticBodiesInAClosedBox) {
+  using S = TypeParam;
+  for (const ContactPrecision precision : this->kPrecisions) {
+    for (const S friction : {S(0), ratio<S>(1, 2)}) {
+      Space<S> space;
+      space.setPrecision(precision);
+      const std::vector<BodyId> bodies = this->addClosedBox(space, friction);
+      const double before = this->energyOf(space, bodies);
+      double most = 0;
+      for (int i = 0; i < 320; ++i) {
+        space.step(kTick<S>);
+        most = std::max(most, this->energyOf(space, bodies));
+      }
+      EXPECT_LE(most, before * 1.0001);
+      EXPECT_GE(this->energyOf(space, bodies), friction == S(0) ? before * 0.9 : before * 0.01);
     }
   }
 }

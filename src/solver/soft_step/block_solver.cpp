@@ -479,6 +479,10 @@ void BlockSolver<S, N>::bounce(const std::vector<Pair<S>>& pairs, S bounceThresh
     body.momentPerMass = start.momentPerMass;
   }
   for (std::uint32_t i = 0; i < blockCount_; ++i) findBounces(i, pairs, bounceThreshold, restitution);
+  if (restitution.points.empty()) return;
+  restitution.markBouncing();
+  std::size_t next = 0;
+  for (std::uint32_t i = 0; i < blockCount_; ++i) findOthers(i, pairs, next, restitution);
   restitution.solve();
   for (const BouncePoint<S>& point : restitution.points) takeBounce(point, restitution);
 }
@@ -506,19 +510,39 @@ void BlockSolver<S, N>::findBounces(std::uint32_t at, const std::vector<Pair<S>>
     }
     if (!strikes && sum <= bounceThreshold) continue;
     for (int k = 0; k < block.count[lane]; ++k) {
-      if (taken[k] != S(0)) addBounce(at, lane, k, pair, taken[k], restitution);
+      if (taken[k] == S(0)) continue;
+      restitution.points.push_back(bouncePoint(at, lane, k, pair));
+      restitution.points.back().taken = taken[k];
+    }
+  }
+}
+
+/// Adds the points of a block that gave something to a body that bounces, and do not bounce.
+/// @param next  the number of points that bounce in the blocks before
+template <Scalar S, class N>
+void BlockSolver<S, N>::findOthers(std::uint32_t at, const std::vector<Pair<S>>& pairs, std::size_t& next,
+                                   Restitution<S>& restitution) const {
+  const Block& block = blocks_[at];
+  const Rest& rest = rests_[at];
+  for (int lane = 0; lane < N::kLanes; ++lane) {
+    if (block.count[lane] == 0) continue;
+    if (!restitution.bounces(block.bodyA[lane]) && !restitution.bounces(block.bodyB[lane])) continue;
+    for (int k = 0; k < block.count[lane]; ++k) {
+      if (rest.normalTotal[k][lane] == typename N::Sum(0) || restitution.passPoint(at, lane, k, next))
+        continue;
+      restitution.others.push_back(bouncePoint(at, lane, k, pairs[rest.pair[lane]]));
     }
   }
 }
 
 template <Scalar S, class N>
-void BlockSolver<S, N>::addBounce(std::uint32_t at, int lane, int index, const Pair<S>& pair, S taken,
-                                  Restitution<S>& restitution) const {
+BouncePoint<S> BlockSolver<S, N>::bouncePoint(std::uint32_t at, int lane, int index,
+                                              const Pair<S>& pair) const {
   const Block& block = blocks_[at];
   const Rest& rest = rests_[at];
   const auto& normal = block.point[index].normal;
   const auto& tangent = block.point[index].tangent;
-  BouncePoint<S>& point = restitution.points.emplace_back();
+  BouncePoint<S> point;
   point.bodyA = block.bodyA[lane];
   point.bodyB = block.bodyB[lane];
   const int radiusA = (*starts_)[point.bodyA].radiusBits, radiusB = (*starts_)[point.bodyB].radiusBits;
@@ -531,18 +555,24 @@ void BlockSolver<S, N>::addBounce(std::uint32_t at, int lane, int index, const P
   if constexpr (N::kStoresSpins) {
     point.spinA = units_.fromSpin(normal.spinA[lane], radiusA);
     point.spinB = units_.fromSpin(normal.spinB[lane], radiusB);
+    point.tangentSpinA = units_.fromSpin(tangent.spinA[lane], radiusA);
+    point.tangentSpinB = units_.fromSpin(tangent.spinB[lane], radiusB);
   } else {
     point.spinA = block.moments.momentA[lane] * point.armA;
     point.spinB = block.moments.momentB[lane] * point.armB;
+    point.tangentSpinA = block.moments.momentA[lane] * point.tangentArmA;
+    point.tangentSpinB = block.moments.momentB[lane] * point.tangentArmB;
   }
+  point.friction = pair.friction;
   point.pressed = units_.fromSum(rest.normalTotal[index][lane]);
   point.rubbed = units_.fromSum(rest.tangentTotal[index][lane]);
   point.surface = units_.fromSpeed(block.surface[lane]);
   point.elasticity = pair.elasticity;
-  point.taken = taken;
+  point.pair = rest.pair[lane];
   point.block = at;
   point.lane = static_cast<std::uint8_t>(lane);
   point.index = static_cast<std::uint8_t>(index);
+  return point;
 }
 
 template <Scalar S, class N>
@@ -553,6 +583,7 @@ void BlockSolver<S, N>::takeBounce(const BouncePoint<S>& point, const Restitutio
   from.normal.sum[point.lane] = from.tangent.sum[point.lane] = typename N::Sum(0);
   auto& total = rests_[point.block].normalTotal[point.index][point.lane];
   total = units_.sum(point.pressed + point.rebound, misfit);
+  rests_[point.block].tangentTotal[point.index][point.lane] = units_.sum(point.rubbed, misfit);
   for (const std::uint32_t index : {point.bodyA, point.bodyB}) {
     const BounceBody<S>& body = restitution.bodies[index];
     if (body.mass == S(0)) continue;

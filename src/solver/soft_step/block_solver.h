@@ -90,8 +90,9 @@ class BlockSolver {
   void takePushes(std::uint32_t begin, std::uint32_t end);
   void findBounces(std::uint32_t at, const std::vector<Pair<S>>& pairs, S bounceThreshold,
                    Restitution<S>& restitution) const;
-  void addBounce(std::uint32_t at, int lane, int index, const Pair<S>& pair, S taken,
-                 Restitution<S>& restitution) const;
+  void findOthers(std::uint32_t at, const std::vector<Pair<S>>& pairs, std::size_t& next,
+                  Restitution<S>& restitution) const;
+  BouncePoint<S> bouncePoint(std::uint32_t at, int lane, int index, const Pair<S>& pair) const;
   void takeBounce(const BouncePoint<S>& point, const Restitution<S>& restitution);
   void tellImpulse(std::uint32_t at, int lane, Pair<S>& pair) const;
   void storeBlock(std::uint32_t at, std::vector<Pair<S>>& pairs) const;

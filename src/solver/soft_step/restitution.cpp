@@ -27,36 +27,96 @@ S heldProduct(S x, S y) {
   return toScalarWithin(toScaled(x) * toScaled(y), kMostChange<S>);
 }
 
+/// Two points are one where solving them together would divide by less than this.
+template <Scalar S>
+inline constexpr S kApart = S(0x1p-12);
+
 }  // namespace
 
 /// Solves one point, with no more than it has given taken back.
 /// @return by how much it changed
 template <Scalar S>
 S Restitution<S>::pressPoint(BouncePoint<S>& point) {
-  BounceBody<S>&a = bodies[point.bodyA], &b = bodies[point.bodyB];
+  const BounceBody<S>&a = bodies[point.bodyA], &b = bodies[point.bodyB];
   const S speed = relativeSpeed(point.normal, point.armA, point.armB, a.velocity, b.velocity);
   const S k = S(1) + dot(point.spinA, point.armA, point.spinB, point.armB);
-  const S u = max(-heldProduct(speed, reciprocal(k)), -point.taken);
+  return take(point, max(-heldProduct(speed, reciprocal(k)), -point.taken));
+}
+
+/// Gives a point more, and its bodies.
+/// @return its size
+template <Scalar S>
+S Restitution<S>::take(BouncePoint<S>& point, S u) {
   point.taken += u;
   point.pressed += u;
+  push(point, point.normal, point.spinA, point.spinB, u);
+  return abs(u);
+}
+
+/// Solves the two points of a pair together, for one after the other comes to rest only slowly where they are
+/// near each other and friction turns the body; one after the other where one of them would pull.
+template <Scalar S>
+S Restitution<S>::pressPair(BouncePoint<S>& first, BouncePoint<S>& second) {
+  const BounceBody<S>&a = bodies[first.bodyA], &b = bodies[first.bodyB];
+  const auto speedOf = [&](const BouncePoint<S>& point) {
+    return toScaled(relativeSpeed(point.normal, point.armA, point.armB, a.velocity, b.velocity));
+  };
+  const auto answerOf = [&](const BouncePoint<S>& to, const BouncePoint<S>& at) {
+    return toScaled(S(1) + dot(to.spinA, at.armA, to.spinB, at.armB));
+  };
+  const Scaled<S> k1 = answerOf(first, first), k2 = answerOf(second, second), k12 = answerOf(first, second);
+  const Scaled<S> determinant = k1 * k2 - k12 * k12;
+  if (sign(determinant - k1 * k2 * toScaled(kApart<S>)) > 0) {
+    const Scaled<S> v1 = speedOf(first), v2 = speedOf(second);
+    const S u = toScalarWithin<S>((k12 * v2 - k2 * v1) / determinant, kMostChange<S>);
+    const S w = toScalarWithin<S>((k12 * v1 - k1 * v2) / determinant, kMostChange<S>);
+    if (u >= -first.taken && w >= -second.taken) return max(take(first, u), take(second, w));
+  }
+  return max(pressPoint(first), pressPoint(second));
+}
+
+/// Solves one point along the tangent, within what friction of all that it has given allows.
+/// @return by how much it changed
+template <Scalar S>
+S Restitution<S>::rubPoint(BouncePoint<S>& point) {
+  const BounceBody<S>&a = bodies[point.bodyA], &b = bodies[point.bodyB];
+  const Vector<S> t = perp(point.normal);
+  const S speed =
+      relativeSpeed(t, point.tangentArmA, point.tangentArmB, a.velocity, b.velocity) + point.surface;
+  const S k = S(1) + dot(point.tangentSpinA, point.tangentArmA, point.tangentSpinB, point.tangentArmB);
+  const S limit = max(heldProduct(point.friction, point.pressed), abs(point.rubbed));
+  const S u = clamp(point.rubbed - heldProduct(speed, reciprocal(k)), -limit, limit) - point.rubbed;
+  point.rubbed += u;
+  push(point, t, point.tangentSpinA, point.tangentSpinB, u);
+  return abs(u);
+}
+
+/// Gives both bodies of a point an impulse along an axis.
+template <Scalar S>
+void Restitution<S>::push(const BouncePoint<S>& point, const Vector<S>& axis, S spinA, S spinB, S u) {
   const auto change = [&](BounceBody<S>& body, S share, S spin, S by) {
     if (body.mass == S(0)) return;
-    const S changes[3] = {share * (point.normal.x * by), share * (point.normal.y * by),
-                          heldProduct(spin, by)};
+    const S changes[3] = {share * (axis.x * by), share * (axis.y * by), heldProduct(spin, by)};
     for (int i = 0; i < 3; ++i) {
       body.velocity[i] = clamp(body.velocity[i] + changes[i], -kMostChange<S>, kMostChange<S>);
     }
   };
-  change(a, point.shareA, point.spinA, -u);
-  change(b, S(1) - point.shareA, point.spinB, u);
-  return abs(u);
+  change(bodies[point.bodyA], point.shareA, spinA, -u);
+  change(bodies[point.bodyB], S(1) - point.shareA, spinB, u);
 }
 
 template <Scalar S>
 void Restitution<S>::press() {
   for (int pass = 0; pass < kMostPasses; ++pass) {
     S most = S(0);
-    for (BouncePoint<S>& point : points) most = max(most, pressPoint(point));
+    for (std::size_t i = 0; i < points.size();) {
+      const bool two = i + 1 < points.size() && points[i].pair == points[i + 1].pair;
+      for (std::size_t k = i; k < i + (two ? 2 : 1); ++k) {
+        if (points[k].friction != S(0)) most = max(most, rubPoint(points[k]));
+      }
+      most = max(most, two ? pressPair(points[i], points[i + 1]) : pressPoint(points[i]));
+      i += two ? 2 : 1;
+    }
     if (most <= kStill<S>) return;
   }
 }
@@ -67,16 +127,18 @@ std::uint32_t Restitution<S>::groupOf(std::uint32_t body) {
   return body;
 }
 
-/// Puts bodies together that points connect; a group is named by its first body.
+/// Puts bodies together that bounce and that points connect; a group is named by its first body.
 template <Scalar S>
 void Restitution<S>::findGroups() {
   group_.resize(bodies.size());
   for (std::uint32_t i = 0; i < group_.size(); ++i) group_[i] = i;
-  for (const BouncePoint<S>& point : points) {
-    if (bodies[point.bodyA].mass == S(0) || bodies[point.bodyB].mass == S(0)) continue;
+  const auto connect = [&](const BouncePoint<S>& point) {
+    if (!bounces(point.bodyA) || !bounces(point.bodyB)) return;
     const std::uint32_t a = groupOf(point.bodyA), b = groupOf(point.bodyB);
     group_[max(a, b)] = min(a, b);
-  }
+  };
+  for (const BouncePoint<S>& point : points) connect(point);
+  for (const BouncePoint<S>& point : others) connect(point);
 }
 
 /// Adds up what bodies have lost of their energies.
@@ -99,21 +161,41 @@ void Restitution<S>::takeBodies() {
   }
 }
 
+/// The mass by which an impulse of a point is in N s.
+template <Scalar S>
+Scaled<S> Restitution<S>::massOf(const BouncePoint<S>& point) const {
+  const S mass = bodies[point.bodyA].mass;
+  return mass == S(0) ? toScaled(bodies[point.bodyB].mass) * toScaled(S(1) - point.shareA)
+                      : toScaled(mass) * toScaled(point.shareA);
+}
+
+/// The energy that a point has given others in the step, which moved as fast as the mean of before and after,
+/// J.
+template <Scalar S>
+Scaled<S> Restitution<S>::workThrough(const BouncePoint<S>& point, bool movesA, bool movesB) const {
+  const BounceBody<S>&a = bodies[point.bodyA], &b = bodies[point.bodyB];
+  const Vector<S> n = point.normal, t = perp(n);
+  S moverA[3]{}, moverB[3]{};
+  for (int k = 0; k < 3; ++k) {
+    const auto mean = [&](const BounceBody<S>& of) {
+      return of.mass == S(0) ? of.velocity[k] : (of.before[k] + of.velocity[k]) * ratio<S>(1, 2);
+    };
+    if (movesA) moverA[k] = mean(a);
+    if (movesB) moverB[k] = mean(b);
+  }
+  const S along = relativeSpeed(n, point.armA, point.armB, moverA, moverB);
+  const S aside = relativeSpeed(t, point.tangentArmA, point.tangentArmB, moverA, moverB) + point.surface;
+  return toScaled(point.pressed) * toScaled(along) + toScaled(point.rubbed) * toScaled(aside);
+}
+
 /// Adds what a point gives back, and what moves bodies through it that contacts leave as they are.
 template <Scalar S>
 void Restitution<S>::takePoint(const BouncePoint<S>& point) {
   const BounceBody<S>&a = bodies[point.bodyA], &b = bodies[point.bodyB];
-  const Vector<S> n = point.normal, t = perp(n);
   Balance& balance = balances_[groupOf(a.mass == S(0) ? point.bodyB : point.bodyA)];
-  const Scaled<S> mass = a.mass == S(0) ? toScaled(b.mass) * toScaled(S(1) - point.shareA)
-                                        : toScaled(a.mass) * toScaled(point.shareA);
-  const S still[3] = {};
-  const S(&moverA)[3] = a.mass == S(0) ? a.velocity : still;
-  const S(&moverB)[3] = b.mass == S(0) ? b.velocity : still;
-  const S along = relativeSpeed(n, point.armA, point.armB, moverA, moverB);
-  const S aside = relativeSpeed(t, point.tangentArmA, point.tangentArmB, moverA, moverB) + point.surface;
-  balance.taken -=
-      (toScaled(point.pressed) * toScaled(along) + toScaled(point.rubbed) * toScaled(aside)) * mass;
+  const Scaled<S> mass = massOf(point);
+  balance.taken -= workThrough(point, a.mass == S(0), b.mass == S(0)) * mass;
+  const Vector<S> n = point.normal;
   const S now = relativeSpeed(n, point.armA, point.armB, a.velocity, b.velocity);
   const S change = relativeSpeed(n, point.armA, point.armB, changes_[point.bodyA].velocity,
                                  changes_[point.bodyB].velocity);
@@ -121,6 +203,13 @@ void Restitution<S>::takePoint(const BouncePoint<S>& point) {
   balance.linear += rebound * toScaled(now);
   balance.square += rebound * toScaled(change) * toScaled(ratio<S>(1, 2));
   balance.elasticity = max(balance.elasticity, point.elasticity);
+}
+
+/// Takes what a point that does not bounce gave others from what was taken of those that do.
+template <Scalar S>
+void Restitution<S>::takeOther(const BouncePoint<S>& point) {
+  const bool a = bounces(point.bodyA), b = bounces(point.bodyB);
+  balances_[groupOf(a ? point.bodyA : point.bodyB)].taken -= workThrough(point, !a, !b) * massOf(point);
 }
 
 /// The largest part of 1 that gives back no more than it may.
@@ -161,6 +250,7 @@ void Restitution<S>::solve() {
   }
   takeBodies();
   for (const BouncePoint<S>& point : points) takePoint(point);
+  for (const BouncePoint<S>& point : others) takeOther(point);
   for (Balance& balance : balances_) balance.part = partOf(balance);
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].mass == S(0)) continue;
