@@ -206,7 +206,7 @@ typedef struct samestep_settings {
   double damping;            /* What is left of a velocity after a second, 0 to 1; 1 at first. */
   double collision_slop;     /* Sequential impulses: overlap that is left alone, m, 0 to 2^8. */
   double collision_bias;     /* Sequential impulses: what is left of an overlap after a second, 0 to 1. */
-  double contact_hertz;      /* Soft step: stiffness of contacts, 1/s, 0 to 1000; 39 at first. */
+  double contact_hertz;      /* Soft step: greatest stiffness of contacts, 1/s, 0 to 1000; 1000 at first. */
   double contact_damping;    /* Soft step: their damping, 0 to 100, 1 being critical; 10 at first. */
   double contact_push_speed; /* Soft step: the greatest speed at which overlaps are pushed apart, m/s. */
   double contact_margin;     /* Soft step: shapes this close are solved before they touch, m, 0 to 1. */
