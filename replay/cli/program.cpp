@@ -58,6 +58,17 @@ void addComputeOptions(CLI::App& app, ComputeOptions& options) {
       ->capture_default_str();
 }
 
+void addSettingsOption(CLI::App& app, std::string& settings) {
+  app.add_option("--settings", settings,
+                 "A file of settings, as 'samestep tune' writes it, in place of those of the scene");
+}
+
+SceneSource findScene(const std::string& scene, const std::string& settings) {
+  SceneSource source = SceneSource::find(scene);
+  if (!settings.empty()) source.useSettingsFile(settings);
+  return source;
+}
+
 void addTicksOption(CLI::App& app, std::uint64_t& ticks) {
   app.add_option("--ticks", ticks, "How many steps to make; as the scene says if not given")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40));

@@ -14,6 +14,7 @@
 #include <samestep/kernel.h>
 #include <samestep/recording.h>
 #include <samestep/scalar.h>
+#include <samestep/scene.h>
 
 namespace samestep::program {
 
@@ -44,12 +45,19 @@ void addDiff(CLI::App& app, const Wirings& wirings, int& result);
 void addDraw(CLI::App& app, const Wirings& wirings, int& result);
 void addChart(CLI::App& app, int& result);
 void addEnvelope(CLI::App& app, int& result);
+void addTune(CLI::App& app, int& result);
 void addNetsim(CLI::App& app, int& result);
 /// Nothing where the build is without samestep::transport.
 void addMatch(CLI::App& app, int& result);
 
 /// Adds --scalar with the scalars of this build.
 void addScalarOption(CLI::App& app, std::string& scalar);
+
+/// Adds --settings.
+void addSettingsOption(CLI::App& app, std::string& settings);
+/// A scene, with the settings of a file in place of its own unless the file's name is empty.
+/// @throws SceneError
+SceneSource findScene(const std::string& scene, const std::string& settings);
 
 /// Adds --ticks; 0 stands for not given.
 void addTicksOption(CLI::App& app, std::uint64_t& ticks);

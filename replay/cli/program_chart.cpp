@@ -13,6 +13,8 @@ struct Options {
   std::string csv;
   std::uint64_t steps = 0;
   int rounds = 3;
+  int starts = 32;
+  bool stepSizes = false;
   std::vector<std::string> kernels;
 };
 
@@ -24,6 +26,8 @@ int run(const Options& options) {
   SweepOptions sweep;
   sweep.steps = options.steps;
   sweep.rounds = options.rounds;
+  sweep.starts = options.starts;
+  if (options.stepSizes) sweep.halvings = {-1, 0, 1, 2};
   if (!options.kernels.empty()) sweep.kernels.clear();
   for (const std::string& name : options.kernels) {
     sweep.kernels.push_back(ComputeOptions{.kernel = name}.target());
@@ -39,7 +43,7 @@ int run(const Options& options) {
   for (const std::string& line : chart.measure) std::printf("%s\n", line.c_str());
   std::printf("Settings of which nothing faster is as accurate (Pareto front):\n");
   for (const auto& [line, point] : frontOf(chart)) {
-    std::printf("  %10.4f ms per step  %10.3g m  %s, %d %s\n", point->milliseconds, point->error,
+    std::printf("  %10.3f ms per simulated second  %10.3g m  %s, %d %s\n", point->milliseconds, point->error,
                 line->method.c_str(), point->count, line->unit.c_str());
   }
   return kGood;
@@ -59,6 +63,12 @@ void addChart(CLI::App& app, int& result) {
                    "Rounds in which the settings take turns; the time of each is its median")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  word->add_option("--starts", options->starts,
+                   "Starts over which the error of a scene without an exact or converged answer is a median")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  word->add_flag("--step-sizes", options->stepSizes,
+                 "Also lines for steps of twice, a half and a quarter of the scene's own length");
   word->add_option("--kernel", options->kernels,
                    "Give the soft step a line for these processor instructions; may be given several times, "
                    "the best of this machine if not given")

@@ -12,6 +12,7 @@ namespace {
 
 struct Options {
   std::string scene;
+  std::string settings;
   std::string scalar = "fixed";
   std::uint64_t ticks = 0;
   std::uint64_t every = 1;
@@ -28,7 +29,7 @@ void printHighWater() {
 
 template <Scalar S>
 int run(const Options& options) {
-  const SceneSource source = SceneSource::find(options.scene);
+  const SceneSource source = findScene(options.scene, options.settings);
   const std::uint64_t ticks = options.ticks > 0 ? options.ticks : source.summary().ticks;
   WorkerPool pool(options.compute.workers);
   Scene<S> scene(source);
@@ -61,6 +62,7 @@ void addHash(CLI::App& app, int& result) {
   auto options = std::make_shared<Options>();
   word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")
       ->required();
+  addSettingsOption(*word, options->settings);
   addScalarOption(*word, options->scalar);
   addTicksOption(*word, options->ticks);
   word->add_option("--every", options->every, "Print only every K-th tick")

@@ -12,6 +12,7 @@ namespace {
 
 struct Options {
   std::string scene;
+  std::string settings;
   std::string file;
   std::string scalar = "fixed";
   std::uint64_t ticks = 0;
@@ -42,7 +43,7 @@ void recordWords(const Options& options, Recorder<S>& recorder, const Space<S>& 
 
 template <Scalar S>
 int run(const Options& options) {
-  const SceneSource source = SceneSource::find(options.scene);
+  const SceneSource source = findScene(options.scene, options.settings);
   checkWritable(options.file);
   const std::uint64_t ticks = options.ticks > 0 ? options.ticks : source.summary().ticks;
   Scene<S> scene(source);
@@ -82,6 +83,7 @@ void addRecord(CLI::App& app, int& result) {
   word->add_option("SCENE", options->scene, "A name from 'samestep scenes', or the path of a scene file")
       ->required();
   word->add_option("-o,--output", options->file, "The recording to write")->required();
+  addSettingsOption(*word, options->settings);
   addScalarOption(*word, options->scalar);
   addTicksOption(*word, options->ticks);
   word->add_option(

@@ -52,6 +52,7 @@ int samestep::runProgram(int argc, char** argv, const Wirings& wirings) {
   addDraw(app, wirings, result);
   addChart(app, result);
   addEnvelope(app, result);
+  addTune(app, result);
   addNetsim(app, result);
   addMatch(app, result);
   try {

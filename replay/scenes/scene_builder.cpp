@@ -8,6 +8,7 @@
 
 #include "base/require_ieee.h"
 #include "dynamics/body_access.h"
+#include "scenes/scene_settings.h"
 
 namespace samestep {
 
@@ -23,6 +24,10 @@ void SceneBuilder<S>::build() {
   } else {
     buildFile();
   }
+  if (document_.tuned) {
+    const std::uint32_t rate = readTuned(scene_.space_, Cursor(*document_.tuned, document_.tunedFile));
+    if (rate != 0) scene_.timeStep_ = ratio<S>(1, static_cast<int>(rate));
+  }
 }
 
 template <Scalar S>
@@ -34,58 +39,15 @@ void SceneBuilder<S>::buildFile() {
   if (root.has("about")) root.at("about").text();
   if (root.has("ticks")) root.at("ticks").integer(1, 1u << 20);
   if (root.has("stepsPerSecond")) {
-    const std::uint64_t rate = root.at("stepsPerSecond").integer(1, 10000);
-    scene_.timeStep_ = ratio<S>(1, static_cast<int>(rate));
+    scene_.timeStep_ = ratio<S>(1, static_cast<int>(readStepsPerSecond(root)));
   }
-  if (root.has("settings")) readSettings(root.at("settings"));
+  if (root.has("settings")) readSettings(scene_.space_, root.at("settings"));
   if (root.has("handlers")) readHandlers(root.at("handlers"));
   if (root.has("bodies")) readBodies(root.at("bodies"));
   if (root.has("events")) readEvents(root.at("events"));
   if (root.has("inputs")) readInputs(root.at("inputs"));
   const auto byTick = [](const Event& a, const Event& b) { return a.tick < b.tick; };
   std::stable_sort(scene_.events_.begin(), scene_.events_.end(), byTick);
-}
-
-template <Scalar S>
-void SceneBuilder<S>::readSettings(const Cursor& at) {
-  Space<S>& space = scene_.space_;
-  at.allow({"solver", "precision", "gravity", "iterations", "substeps", "damping", "collisionSlop",
-            "collisionBias", "collisionPersistence", "contactHertz", "contactDamping", "contactPushSpeed",
-            "contactMargin", "bounceThreshold", "worldExtent"});
-  at.optional("solver", [&](const Cursor& v) {
-    const std::string& solver = v.text();
-    if (solver == "soft step") return space.setSolver(SolverKind::softStep);
-    if (solver == "sequential impulses") return space.setSolver(SolverKind::sequentialImpulses);
-    v.fail("\"sequential impulses\" or \"soft step\" is wanted here");
-  });
-  at.optional("precision", [&](const Cursor& v) {
-    const std::string& precision = v.text();
-    if (precision == "fast") return space.setPrecision(ContactPrecision::fast);
-    if (precision == "accurate") return space.setPrecision(ContactPrecision::accurate);
-    v.fail("\"accurate\" or \"fast\" is wanted here");
-  });
-  at.optional("substeps",
-              [&](const Cursor& v) { space.setSubsteps(static_cast<int>(v.integer(0, 1u << 30))); });
-  at.optional("contactHertz", [&](const Cursor& v) {
-    space.setContactSoftness(v.template number<S>(), space.settings().contactDamping);
-  });
-  at.optional("contactDamping", [&](const Cursor& v) {
-    space.setContactSoftness(space.settings().contactHertz, v.template number<S>());
-  });
-  at.optional("contactPushSpeed",
-              [&](const Cursor& v) { space.setContactPushSpeed(v.template number<S>()); });
-  at.optional("contactMargin", [&](const Cursor& v) { space.setContactMargin(v.template number<S>()); });
-  at.optional("bounceThreshold", [&](const Cursor& v) { space.setBounceThreshold(v.template number<S>()); });
-  at.optional("gravity", [&](const Cursor& v) { space.setGravity(v.template vector<S>()); });
-  at.optional("iterations",
-              [&](const Cursor& v) { space.setIterations(static_cast<int>(v.integer(0, 1u << 30))); });
-  at.optional("damping", [&](const Cursor& v) { space.setDamping(v.template number<S>()); });
-  at.optional("collisionSlop", [&](const Cursor& v) { space.setCollisionSlop(v.template number<S>()); });
-  at.optional("collisionBias", [&](const Cursor& v) { space.setCollisionBias(v.template number<S>()); });
-  at.optional("collisionPersistence", [&](const Cursor& v) {
-    space.setCollisionPersistence(static_cast<std::uint32_t>(v.integer(0, 0xffffffffu)));
-  });
-  at.optional("worldExtent", [&](const Cursor& v) { space.setWorldExtent(v.template number<S>()); });
 }
 
 template <Scalar S>

@@ -38,7 +38,6 @@ class SceneBuilder {
   void buildPyramid(std::uint32_t rows);
   void buildSoup(std::uint32_t count);
 
-  void readSettings(const Cursor& at);
   void readHandlers(const Cursor& at);
   void readBodies(const Cursor& at);
   void readCsvBodies(const Cursor& at);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,8 @@ struct SceneSource::Document {
   std::string folder;           ///< Folder of the files that it names; with a slash at the end, or empty.
   SceneFiles* files = nullptr;  ///< Null for those on disk.
   json::Node root;
+  std::optional<json::Node> tuned;  ///< Settings in place of the scene's own.
+  std::string tunedFile;
   std::string family;  ///< Empty for a file.
   std::uint32_t size = 0;
 

@@ -151,6 +151,13 @@ SceneSource SceneSource::fromText(std::string_view text, const std::string& file
   return source;
 }
 
+void SceneSource::useSettings(std::string_view text, const std::string& file) {
+  document_->tuned = json::parse(text, file);
+  document_->tunedFile = file;
+}
+
+void SceneSource::useSettingsFile(const std::string& path) { useSettings(readFromDisk(path), path); }
+
 SceneSource::~SceneSource() { delete document_; }
 
 std::string SceneSource::Document::read(const std::string& path) const {

@@ -25,7 +25,10 @@ std::string quoted(const std::string& text) {
 void markFront(Chart& chart) {
   std::vector<ChartPoint*> points;
   for (ChartLine& line : chart.lines) {
-    for (ChartPoint& point : line.points) points.push_back(&point);
+    for (ChartPoint& point : line.points) {
+      point.onFront = false;
+      if (point.failure.empty()) points.push_back(&point);
+    }
   }
   std::stable_sort(points.begin(), points.end(), [](const ChartPoint* a, const ChartPoint* b) {
     return a->milliseconds != b->milliseconds ? a->milliseconds < b->milliseconds : a->error < b->error;
@@ -52,16 +55,19 @@ std::vector<FrontPoint> frontOf(const Chart& chart) {
 
 std::string chartCsv(const Chart& chart) {
   std::string out =
-      "scene,method,scalar,unit,count,ms_per_step,ms_fastest,ms_slowest,error_m,overlap_m,drift_m,error_kind,"
-      "on_front\n";
+      "scene,method,scalar,steps_per_second,unit,count,ms_per_second,ms_fastest,ms_slowest,error_m,"
+      "low_quartile_m,high_quartile_m,overlap_m,drift_m,error_kind,on_front,failure\n";
   for (const ChartLine& line : chart.lines) {
     for (const ChartPoint& point : line.points) {
-      char numbers[200];
-      std::snprintf(numbers, sizeof numbers, "%d,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g", point.count,
-                    point.milliseconds, point.fastest, point.slowest, point.error, point.overlap,
-                    point.drift);
-      out += quoted(chart.scene) + "," + line.method + "," + line.scalar + "," + line.unit + "," + numbers +
-             "," + chart.kind + "," + (point.onFront ? "yes" : "no") + "\n";
+      char numbers[240];
+      std::snprintf(numbers, sizeof numbers, "%d,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g", point.count,
+                    point.milliseconds, point.fastest, point.slowest, point.error, point.lowQuartile,
+                    point.highQuartile, point.overlap, point.drift);
+      char rate[32];
+      std::snprintf(rate, sizeof rate, "%.6g", line.stepsPerSecond);
+      out += quoted(chart.scene) + "," + line.method + "," + line.scalar + "," + rate + "," + line.unit +
+             "," + numbers + "," + chart.kind + "," + (point.onFront ? "yes" : "no") + "," +
+             quoted(point.failure) + "\n";
     }
   }
   return out;

@@ -4,18 +4,23 @@
 #include <string>
 #include <vector>
 
+#include <samestep/settings.h>
+
 namespace samestep {
 
 /// One setting of a method: how long a step takes and how far its result is off.
 struct ChartPoint {
   int count = 0;            ///< Iterations or substeps.
-  double milliseconds = 0;  ///< Per step, the median of the rounds.
-  double fastest = 0;       ///< Time of the fastest round, ms per step.
+  double milliseconds = 0;  ///< Per simulated second, the median of the rounds.
+  double fastest = 0;       ///< Time of the fastest round, ms per simulated second.
   double slowest = 0;
-  double error = 0;    ///< m; what it is of, Chart::measure says.
+  double error = 0;    ///< m; what it is of, Chart::measure says; the median where there are several starts.
   double overlap = 0;  ///< Overlap that error is the sum of, in kinds rest and overlap, m.
   double drift = 0;
+  double lowQuartile = 0;  ///< Quartile of the errors of several starts, m; error where there is one.
+  double highQuartile = 0;
   bool onFront = false;  ///< No faster one is as accurate, to 1 %.
+  std::string failure;   ///< Why a step could not be made; empty where all were, and then error is a number.
 };
 
 /// All settings of a method, by rising count.
@@ -24,6 +29,9 @@ struct ChartLine {
   std::string scalar;
   std::string unit;  ///< "iterations" or "substeps".
   std::vector<ChartPoint> points;
+  SolverKind solver = SolverKind::softStep;
+  ContactPrecision precision = ContactPrecision::accurate;
+  double stepsPerSecond = 60;
 };
 
 /// Speed against accuracy of one scene.
@@ -33,10 +41,12 @@ struct Chart {
   std::vector<std::string> measure;  ///< Meaning of error, in lines of up to 100 characters.
   /// Below it, errors say nothing: how far the reference itself may be off, m; 0 for none.
   double resolution = 0;
+  /// Steps per second of the scene itself.
+  double stepsPerSecond = 60;
   std::vector<ChartLine> lines;
 };
 
-/// Sets onFront of every point.
+/// Sets onFront of every point; a failed one is never on it.
 void markFront(Chart& chart);
 
 /// A point of the front and whose it is.
@@ -51,7 +61,8 @@ std::vector<FrontPoint> frontOf(const Chart& chart);
 std::string chartCsv(const Chart& chart);
 
 /// The chart as SVG: time across, error up, both logarithmic, a line per method, the front marked. It brings
-/// colours for light and dark pages.
+/// colours for light and dark pages. Bars are quartiles, crosses at the top edge what failed, a band at the
+/// bottom where errors say nothing, an upright line what a step may take that has 16 ms.
 std::string drawChart(const Chart& chart);
 
 }  // namespace samestep

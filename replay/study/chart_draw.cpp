@@ -16,6 +16,8 @@ constexpr int kRight = 630;
 constexpr int kTop = 84;
 constexpr int kBottom = 464;
 constexpr int kLegend = 660;
+/// What a game gives a step, ms.
+constexpr double kBudget = 16;
 
 struct Colour {
   const char* light;
@@ -69,6 +71,7 @@ class ChartArtist {
     heading();
     grid();
     resolution();
+    budget();
     front();
     for (std::size_t i = 0; i < chart_.lines.size(); ++i) line(i);
     legend();
@@ -80,14 +83,16 @@ class ChartArtist {
   static LogAxis timeAxis(const Chart& chart) {
     Range range;
     for (const ChartLine& line : chart.lines) {
-      for (const ChartPoint& point : line.points) range.take(point.milliseconds);
+      for (const ChartPoint& point : line.points) range.take(point.milliseconds);  // 0 of most failures
     }
     return range.axis();
   }
   static LogAxis errorAxis(const Chart& chart) {
     Range range;
     for (const ChartLine& line : chart.lines) {
-      for (const ChartPoint& point : line.points) range.take(point.error);
+      for (const ChartPoint& point : line.points) {
+        for (const double error : {point.error, point.lowQuartile, point.highQuartile}) range.take(error);
+      }
     }
     return range.axis();
   }
@@ -149,7 +154,7 @@ class ChartArtist {
     }
     const double middle = (kTop + kBottom) / 2.0;
     text((kLeft + kRight) / 2.0, kBottom + 42, " text-anchor=\"middle\"",
-         "time per step, ms (further left is faster)");
+         "time per simulated second, ms (further left is faster)");
     text(22, middle, " text-anchor=\"middle\" transform=\"rotate(-90 22 " + number(middle) + ")\"",
          "error, m (further down is more accurate)");
   }
@@ -161,11 +166,37 @@ class ChartArtist {
     const double at = up_.place(chart_.resolution);
     return at > 0 && at < 1;
   }
-  /// Below it errors say nothing.
+  /// Draws the band in which errors say nothing.
   void resolution() {
-    if (!showsResolution()) return;
-    const double at = y(chart_.resolution);
-    straight("mark", kInk, kLeft, at, kRight, at, " stroke-dasharray=\"2 4\"");
+    if (showsResolution()) band(kLeft, y(chart_.resolution), kRight - kLeft, kBottom - y(chart_.resolution));
+  }
+  void band(double left, double top, double width, double height) {
+    out_ += "<rect class=\"ink\" fill=\"" + std::string(kInk.light) + "\" fill-opacity=\"0.1\" x=\"" +
+            number(left) + "\" y=\"" + number(top) + "\" width=\"" + number(width) + "\" height=\"" +
+            number(height) + "\"/>\n";
+  }
+
+  /// Time that a simulated second may take where each step has 16 ms.
+  double budgetTime() const { return kBudget * chart_.stepsPerSecond; }
+  bool showsBudget() const {
+    const double at = across_.place(budgetTime());
+    return at > 0 && at < 1;
+  }
+  void budget() {
+    if (!showsBudget()) return;
+    const double at = x(budgetTime());
+    straight("mark", kInk, at, kTop, at, kBottom, " stroke-width=\"1.5\"");
+  }
+
+  bool showsFailures() const {
+    return std::any_of(chart_.lines.begin(), chart_.lines.end(), [](const ChartLine& line) {
+      return std::any_of(line.points.begin(), line.points.end(),
+                         [](const ChartPoint& point) { return !point.failure.empty(); });
+    });
+  }
+  void cross(const Colour& colour, double atX, double atY) {
+    straight("mark", colour, atX - 5, atY - 5, atX + 5, atY + 5, " stroke-width=\"2\"");
+    straight("mark", colour, atX - 5, atY + 5, atX + 5, atY - 5, " stroke-width=\"2\"");
   }
 
   /// A staircase: what can be had at most for so much time.
@@ -205,13 +236,24 @@ class ChartArtist {
     const ChartLine& drawn = chart_.lines[index];
     const std::size_t colour = index % std::size(kColours);
     std::string points;
-    for (const ChartPoint& point : drawn.points) points += (points.empty() ? "" : " ") + place(point);
+    for (const ChartPoint& point : drawn.points) {
+      if (point.failure.empty()) points += (points.empty() ? "" : " ") + place(point);
+    }
     out_ += "<polyline class=\"line" + std::to_string(colour) +
             "\" fill=\"none\" stroke-width=\"2\" stroke=\"" + kColours[colour].light + "\"" +
             (fixed(index) ? " stroke-dasharray=\"7 3\"" : "") + " points=\"" + points + "\"/>\n";
     for (const ChartPoint& point : drawn.points) {
-      const double atX = x(point.milliseconds);
-      const double atY = y(point.error);
+      const bool failed = !point.failure.empty();
+      const double atX = point.milliseconds > 0 ? x(point.milliseconds) : kLeft;
+      const double atY = failed ? kTop : y(point.error);
+      if (failed) {
+        cross(kColours[colour], atX, atY);
+        continue;
+      }
+      if (point.highQuartile > point.lowQuartile) {
+        straight(("line" + std::to_string(colour)).c_str(), kColours[colour], atX, y(point.lowQuartile), atX,
+                 y(point.highQuartile), " stroke-width=\"1\"");
+      }
       dot(index, atX, atY);
       if (point.onFront) ring(atX, atY);
       text(atX + 8, atY + (fixed(index) ? 15 : -7), " font-size=\"10\"", std::to_string(point.count));
@@ -234,10 +276,20 @@ class ChartArtist {
     text(kLegend + 40, at + 20, "", "faster is as accurate");
     at += 48;
     if (showsResolution()) {
-      straight("mark", kInk, kLegend, at, kLegend + 30, at, " stroke-dasharray=\"2 4\"");
+      band(kLegend, at - 10, 30, 20);
       text(kLegend + 40, at + 4, "", "how far off the");
       text(kLegend + 40, at + 20, "", "reference may be");
       at += 44;
+    }
+    if (showsBudget()) {
+      straight("mark", kInk, kLegend + 15, at - 10, kLegend + 15, at + 10, " stroke-width=\"1.5\"");
+      text(kLegend + 40, at + 4, "", "16 ms a step");
+      at += 26;
+    }
+    if (showsFailures()) {
+      cross(kInk, kLegend + 15, at);
+      text(kLegend + 40, at + 4, "", "a step failed");
+      at += 26;
     }
     for (const char* note : {"Numbers beside points:", "iterations (impulses),", "substeps (soft step)"}) {
       text(kLegend, at, "", note);

@@ -57,6 +57,65 @@ Spots bouncedBalls(const StartWorld& start, double time) {
   return spots;
 }
 
+/// Path of a body that friction brings from one speed to another with a constant acceleration, m.
+double pathToSpeed(double from, double to, double acceleration, double time) {
+  const double change = abs(to - from);
+  // Without friction the change takes for ever.
+  const double whole = acceleration > 0 ? change / acceleration : time;
+  const double rubbed = std::min(time, whole);
+  const double sign = to < from ? -1 : 1;
+  return from * rubbed + sign * acceleration * rubbed * rubbed / 2 + to * (time - rubbed);
+}
+
+/// Flat boxes on a level floor, whose friction is 1 and whose surface may move.
+Spots rubbedBoxes(const StartWorld& start, double time) {
+  Spots spots;
+  for (const StartWorld::Moving& box : start.bodies) {
+    const double path = pathToSpeed(box.velocityX, start.belt, -start.gravityY * box.friction, time);
+    spots.push_back({box.spot.body, box.spot.x + path, box.spot.y});
+  }
+  return spots;
+}
+
+/// Bodies that touch nothing.
+Spots thrownBodies(const StartWorld& start, double time) {
+  Spots spots;
+  for (const StartWorld::Moving& body : start.bodies) {
+    spots.push_back({body.spot.body, body.spot.x + body.velocityX * time + start.gravityX * time * time / 2,
+                     body.spot.y + body.velocityY * time + start.gravityY * time * time / 2});
+  }
+  return spots;
+}
+
+/// Discs that roll down a slope: of the force along it a third turns them.
+Spots rolledBalls(const StartWorld& start, double time) {
+  Spots spots;
+  for (const StartWorld::Moving& ball : start.bodies) {
+    const double along = start.gravityX * ball.cosine + start.gravityY * ball.sine;
+    const double path = along * 2 / 3 * time * time / 2;
+    spots.push_back({ball.spot.body, ball.spot.x + path * ball.cosine, ball.spot.y + path * ball.sine});
+  }
+  return spots;
+}
+
+/// Pairs of balls of one density, left and right, that meet head-on; the elasticity of the right one is 1.
+Spots metBalls(const StartWorld& start, double time) {
+  Spots spots;
+  for (std::size_t i = 0; i + 1 < start.bodies.size(); i += 2) {
+    const StartWorld::Moving& a = start.bodies[i];
+    const StartWorld::Moving& b = start.bodies[i + 1];
+    const double massA = a.radius * a.radius;
+    const double massB = b.radius * b.radius;
+    const double closing = a.velocityX - b.velocityX;
+    const double before = std::min(time, (b.spot.x - a.spot.x - a.radius - b.radius) / closing);
+    const double blow = (1 + a.elasticity) * closing / (massA + massB);
+    const double after = time - before;
+    spots.push_back({a.spot.body, a.spot.x + a.velocityX * time - blow * massB * after, a.spot.y});
+    spots.push_back({b.spot.body, b.spot.x + b.velocityX * time + blow * massA * after, b.spot.y});
+  }
+  return spots;
+}
+
 /// Rigid boxes in balance.
 Spots whereTheyBegan(const StartWorld& start, double) {
   Spots spots;
@@ -68,6 +127,12 @@ constexpr ExactAnswer kExactAnswers[] = {
     // The first block reaches the end of the slope after 190 steps.
     {"incline", 120, 180, "the blocks from where gravity and friction bring them", slidBlocks},
     {"bounce", 180, 1u << 20, "the balls from their exact paths", bouncedBalls},
+    {"projectile", 120, 1u << 12, "the bodies from the parabolas of free flight", thrownBodies},
+    {"slide", 120, 900, "the boxes from where friction brings them", rubbedBoxes},
+    {"conveyor", 180, 900, "the boxes from where the belt brings them", rubbedBoxes},
+    // The lowest ball reaches the end of the slope after 254 steps.
+    {"roll", 180, 240, "the balls from where they roll without slipping", rolledBalls},
+    {"impact", 120, 900, "the balls from where one blow each sends them", metBalls},
     {"pyramid", 330, 1u << 20, "the boxes from where they began, as rigid boxes stay there", whereTheyBegan},
 };
 
@@ -100,6 +165,8 @@ StartWorld startOf(const Space<S>& space) {
     const Shape<S>* first = nullptr;
     space.eachShape(body.id(), [&](const Shape<S>& shape) {
       if (first == nullptr) first = &shape;
+      if (!body.isDynamic() && shape.surfaceVelocity().x != S(0))
+        start.belt = plain(shape.surfaceVelocity().x);
       const double top = plain(boundingBox(shape, body.transform()).top);
       if (body.isDynamic() || (found && top <= start.floor)) return;
       start.floor = top;
@@ -113,7 +180,9 @@ StartWorld startOf(const Space<S>& space) {
                             plain(body.angularVelocity()),
                             first->type() == ShapeType::circle ? plain(first->radius()) : 0,
                             plain(first->friction()),
-                            plain(first->elasticity())});
+                            plain(first->elasticity()),
+                            plain(body.velocity().x),
+                            plain(body.velocity().y)});
   });
   return start;
 }

@@ -39,10 +39,12 @@ struct StartWorld {
     double turning;       ///< rad/s
     double radius;        ///< Radius of its first shape if that is a circle, else 0; m.
     double friction, elasticity;
+    double velocityX = 0, velocityY = 0;  ///< m/s
   };
   std::vector<Moving> bodies;  ///< The dynamic ones that have shapes, by rising index.
   double gravityX = 0;
   double gravityY = 0;
+  double belt = 0;   ///< Speed of the surface of what is static, the last with one, m/s along x.
   double floor = 0;  ///< The greatest height of anything static, m.
 };
 

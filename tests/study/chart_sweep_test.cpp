@@ -131,6 +131,77 @@ TEST(ChartSweepTest, MoreStepsThanAnExactAnswerHoldsAreRefused) {
   EXPECT_THROW(sweep(SceneSource::find("incline"), 181), std::runtime_error);
 }
 
+TEST(ChartSweepTest, EveryMethodHasALineForEachStepSize) {
+  SweepOptions options;
+  options.steps = 60;
+  options.rounds = 1;
+  options.leastSeconds = 0;
+  options.halvings = {-1, 0, 2};
+  const Chart chart = sweepScene(SceneSource::find("projectile"), options);
+
+  ASSERT_EQ(chart.lines.size(), 3 * methods().size());
+  EXPECT_EQ(chart.lines[0].method, std::string(methods()[0].name) + " at 1/30 s");
+  EXPECT_EQ(chart.lines[0].stepsPerSecond, 30);
+  EXPECT_EQ(chart.lines[1].method, methods()[0].name);
+  EXPECT_EQ(chart.lines[1].stepsPerSecond, 60);
+  EXPECT_EQ(chart.lines[2].stepsPerSecond, 240);
+  // Impulses fall by whole steps, so that their error goes with the step's length.
+  EXPECT_GT(chart.lines[0].points.back().error, 1.5 * chart.lines[1].points.back().error);
+  EXPECT_GT(chart.lines[1].points.back().error, 2 * chart.lines[2].points.back().error);
+}
+
+TEST(ChartSweepTest, AStepSizeOfASceneWithEventsIsItsOwn) {
+  SweepOptions options;
+  options.halvings = {1};
+
+  EXPECT_THROW(sweepScene(SceneSource::find("arena"), options), std::runtime_error);
+}
+
+/// Errors of the soft step in the first scalar of the build, by rising substeps.
+std::vector<double> softErrors(const char* scene, std::uint64_t steps) {
+  const Chart chart = sweep(SceneSource::find(scene), steps);
+  for (const ChartLine& line : chart.lines) {
+    if (line.solver != SolverKind::softStep) continue;
+    std::vector<double> errors;
+    for (const ChartPoint& point : line.points) errors.push_back(point.error);
+    return errors;
+  }
+  return {};
+}
+
+// Halved from each count of substeps to its double, to a fifth.
+TEST(ChartSweepTest, ErrorsOfTheSoftStepFallWithTheSubsteps) {
+  for (const char* scene : {"slide", "roll", "conveyor", "incline", "pyramid:12"}) {
+    const std::vector<double> errors = softErrors(scene, 120);
+    ASSERT_EQ(errors.size(), 5u);
+    for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_LT(errors[i], 0.6 * errors[i - 1]) << scene << i;
+  }
+}
+
+TEST(ChartSweepTest, FreeFlightOfTheSoftStepIsExactWithAnySubsteps) {
+  for (const double error : softErrors("projectile", 120)) EXPECT_LT(error, 1e-6);
+}
+
+TEST(ChartSweepTest, ErrorsWithoutAnAnswerAreMediansOfStarts) {
+  SweepOptions options;
+  options.steps = 120;
+  options.rounds = 1;
+  options.leastSeconds = 0;
+  options.starts = 3;
+  const Chart chart = sweepScene(SceneSource::find("soup:60"), options);
+
+  EXPECT_THAT(chart.measure[1], HasSubstr("3 starts"));
+  bool differ = false;
+  for (const ChartLine& line : chart.lines) {
+    for (const ChartPoint& point : line.points) {
+      EXPECT_LE(point.lowQuartile, point.error);
+      EXPECT_LE(point.error, point.highQuartile);
+      differ = differ || point.lowQuartile < point.highQuartile;
+    }
+  }
+  EXPECT_TRUE(differ);
+}
+
 TEST(ChartSweepTest, TellsHowFarItIs) {
   int told = 0;
   int last = -1;

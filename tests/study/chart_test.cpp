@@ -17,7 +17,7 @@ ChartPoint point(int count, double milliseconds, double error) {
   ChartPoint made;
   made.count = count;
   made.milliseconds = made.fastest = made.slowest = milliseconds;
-  made.error = made.overlap = error;
+  made.error = made.overlap = made.lowQuartile = made.highQuartile = error;
   return made;
 }
 
@@ -76,10 +76,10 @@ TEST(ChartTest, APerfectResultEndsTheFront) {
 TEST(ChartTest, CsvHasAHeaderAndARowForEachPoint) {
   const std::string csv = chartCsv(example());
 
-  EXPECT_THAT(csv, ::testing::StartsWith("scene,method,scalar,unit,count,ms_per_step,"));
+  EXPECT_THAT(csv, ::testing::StartsWith("scene,method,scalar,steps_per_second,unit,count,ms_per_second,"));
   EXPECT_EQ(times(csv, "\n"), 6);
-  EXPECT_THAT(csv, HasSubstr("\nheap,slow,fixed,substeps,2,4,4,4,0.02,0.02,0,rest,yes\n"));
-  EXPECT_THAT(csv, HasSubstr("\nheap,slow,fixed,substeps,1,2,2,2,0.5,0.5,0,rest,no\n"));
+  EXPECT_THAT(csv, HasSubstr("\nheap,slow,fixed,60,substeps,2,4,4,4,0.02,0.02,0.02,0.02,0,rest,yes,\n"));
+  EXPECT_THAT(csv, HasSubstr("\nheap,slow,fixed,60,substeps,1,2,2,2,0.5,0.5,0.5,0.5,0,rest,no,\n"));
 }
 
 TEST(ChartTest, CsvQuotesASceneWithACommaInItsName) {
@@ -95,8 +95,8 @@ TEST(ChartTest, PictureHasALinePerMethodAndARingPerPointOfTheFront) {
   EXPECT_EQ(times(svg, "<polyline"), 2);
   // And one in the legend.
   EXPECT_EQ(times(svg, "r=\"8\""), 4);
-  for (const char* words : {"heap", "How far they are off.", "slow", "quick", "time per step, ms", "error, m",
-                            "prefers-color-scheme: dark", "</svg>"}) {
+  for (const char* words : {"heap", "How far they are off.", "slow", "quick", "time per simulated second, ms",
+                            "error, m", "prefers-color-scheme: dark", "</svg>"}) {
     EXPECT_THAT(svg, HasSubstr(words));
   }
 }
@@ -108,6 +108,33 @@ TEST(ChartTest, PictureShowsHowFarTheReferenceIsOffWhereThatIsOnTheAxis) {
   EXPECT_THAT(drawChart(chart), HasSubstr("reference may be"));
   chart.resolution = 1e-9;
   EXPECT_THAT(drawChart(chart), Not(HasSubstr("reference may be")));
+}
+
+TEST(ChartTest, WhatFailedIsNoPointOfTheFrontAndACrossInThePicture) {
+  Chart chart = example();
+  EXPECT_THAT(drawChart(chart), Not(HasSubstr("a step failed")));
+  chart.lines[1].points[0].failure = "too fast, at 3 m";
+  chart.lines[1].points[0].milliseconds = 0;
+  markFront(chart);
+
+  EXPECT_EQ(countsOnFront(chart), (std::vector<int>{1, 4, 2}));
+  EXPECT_THAT(drawChart(chart), HasSubstr("a step failed"));
+  EXPECT_THAT(chartCsv(chart), HasSubstr(",no,\"too fast, at 3 m\"\n"));
+}
+
+TEST(ChartTest, PictureHasABarFromQuartileToQuartile) {
+  Chart chart = example();
+  const int before = times(drawChart(chart), "<path class=\"line0\"");
+  chart.lines[0].points[0].highQuartile = 0.6;
+
+  EXPECT_EQ(times(drawChart(chart), "<path class=\"line0\""), before + 1);
+}
+
+TEST(ChartTest, PictureShowsTheBudgetOfAStepWhereThatIsOnTheAxis) {
+  Chart chart = example();
+  EXPECT_THAT(drawChart(chart), Not(HasSubstr("16 ms a step")));
+  chart.lines[0].points[0].milliseconds = 2000;
+  EXPECT_THAT(drawChart(chart), HasSubstr("16 ms a step"));
 }
 
 TEST(ChartTest, PictureEscapesWhatItIsGiven) {

@@ -83,6 +83,68 @@ TEST(ExactAnswerTest, BlockSlidesByGravityLessFrictionOrStays) {
   EXPECT_NEAR(path(0.9), 0, 1e-12);
 }
 
+// Thrown at 3 and 4 m/s: after 2 s 6 m on, 8 - 20 up.
+TEST(ExactAnswerTest, WhatTouchesNothingFliesAParabola) {
+  StartWorld start;
+  start.gravityY = -10;
+  start.bodies = {moving(5)};
+  start.bodies[0].velocityX = 3;
+  start.bodies[0].velocityY = 4;
+  const Spot at = exactAnswerOf("projectile")->after(start, 2)[0];
+
+  EXPECT_DOUBLE_EQ(at.x, 9);
+  EXPECT_DOUBLE_EQ(at.y, -7);
+}
+
+TEST(ExactAnswerTest, FrictionStopsABoxOrBringsItToTheSpeedOfTheBelt) {
+  StartWorld start;
+  start.gravityY = -10;
+  start.bodies = {moving(0)};
+  start.bodies[0].velocityX = 10;
+  start.bodies[0].friction = 0.5;
+  const auto path = [&](double time) { return exactAnswerOf("slide")->after(start, time)[0].x - 3; };
+
+  EXPECT_DOUBLE_EQ(path(1), 7.5);
+  EXPECT_DOUBLE_EQ(path(2), 10);
+  EXPECT_DOUBLE_EQ(path(9), 10);
+  start.belt = 20;
+  EXPECT_DOUBLE_EQ(path(2), 30);
+  EXPECT_DOUBLE_EQ(path(3), 50);
+  start.bodies[0].friction = 0;
+  EXPECT_DOUBLE_EQ(path(2), 20);
+}
+
+// A slope of 3 : 4 as above: 4 m/s^2 along it.
+TEST(ExactAnswerTest, ABallRollsWithTwoThirdsOfWhatABlockWouldHave) {
+  StartWorld start;
+  start.gravityY = -10;
+  start.bodies = {moving(0)};
+  start.bodies[0].cosine = 0.8;
+  start.bodies[0].sine = 0.6;
+  const Spot at = exactAnswerOf("roll")->after(start, 2)[0];
+
+  EXPECT_DOUBLE_EQ((3 - at.x) / 0.8, 8);
+  EXPECT_DOUBLE_EQ(at.y / -0.6, 8);
+}
+
+// Of equal masses the second goes on with the speed of the first; of a heavy first one both go on.
+TEST(ExactAnswerTest, BallsThatMeetExchangeTheirSpeeds) {
+  StartWorld start;
+  start.bodies = {moving(0), moving(0)};
+  start.bodies[1].spot.x = 6;
+  start.bodies[0].velocityX = 2;
+  start.bodies[0].elasticity = 1;
+  const auto after = [&](double time) { return exactAnswerOf("impact")->after(start, time); };
+
+  EXPECT_DOUBLE_EQ(after(1)[0].x, 5);
+  EXPECT_DOUBLE_EQ(after(1)[1].x, 6);
+  EXPECT_DOUBLE_EQ(after(3)[0].x, 5);
+  EXPECT_DOUBLE_EQ(after(3)[1].x, 10);
+  start.bodies[0].elasticity = 0;
+  EXPECT_DOUBLE_EQ(after(3)[0].x, 7);
+  EXPECT_DOUBLE_EQ(after(3)[1].x, 8);
+}
+
 template <class S>
 class ExactSceneTest : public ::testing::Test {};
 TYPED_TEST_SUITE(ExactSceneTest, AllScalars);
@@ -106,6 +168,11 @@ TYPED_TEST(ExactSceneTest, TheEngineComesNearTheExactAnswers) {
     EXPECT_LT(distanceAtEnd<TypeParam>("incline", 180, solver, 10), 0.1);
     EXPECT_LT(distanceAtEnd<TypeParam>("bounce", 180, solver, 9), 0.3);
     EXPECT_LT(distanceAtEnd<TypeParam>("pyramid:8", 330, solver, 36), 0.01);
+    EXPECT_LT(distanceAtEnd<TypeParam>("projectile", 120, solver, 6), 0.2);
+    EXPECT_LT(distanceAtEnd<TypeParam>("slide", 300, solver, 8), 0.08);
+    EXPECT_LT(distanceAtEnd<TypeParam>("conveyor", 300, solver, 8), 0.08);
+    EXPECT_LT(distanceAtEnd<TypeParam>("roll", 240, solver, 6), 0.12);
+    EXPECT_LT(distanceAtEnd<TypeParam>("impact", 120, solver, 14), 0.12);
   }
 }
 

@@ -66,6 +66,15 @@ class SceneSource {
 
   SceneSummary summary() const;
 
+  /// Puts settings in the place of the scene's own, as `samestep tune` writes them. They are read when a
+  /// Scene is made of it, which throws SceneError for what is wrong with them.
+  /// @param file  what errors call them
+  /// @throws SceneError for what is no JSON
+  void useSettings(std::string_view text, const std::string& file);
+  /// Puts the settings of a file in the place of the scene's own.
+  /// @throws SceneError for one that cannot be read, too
+  void useSettingsFile(const std::string& path);
+
   struct Document;
   const Document& document() const { return *document_; }
 
@@ -92,6 +101,8 @@ class Scene {
   const Space<S>& space() const { return space_; }
   /// Seconds.
   S timeStep() const { return timeStep_; }
+  /// Whether anything is to happen at a numbered step.
+  bool hasEvents() const { return !events_.empty(); }
   /// Steps made so far.
   std::uint64_t tick() const { return space_.stamp(); }
 
@@ -132,7 +143,17 @@ class Scene {
   std::optional<SceneError> unsteppable_;  // The first body that is so as it stands in the scene.
 };
 
-#define SAMESTEP_EACH_SCALAR extern template class Scene<S>;
+/// Sets what stands in a document of settings, as `samestep tune` writes it: "settings" as in a scene, and
+/// "stepsPerSecond" if it is there.
+/// @param file  what errors call it
+/// @return steps per second; 0 where the document has none
+/// @throws SceneError; the Space is then as it was
+template <Scalar S>
+std::uint32_t useSettings(Space<S>& space, std::string_view text, const std::string& file);
+
+#define SAMESTEP_EACH_SCALAR      \
+  extern template class Scene<S>; \
+  extern template std::uint32_t useSettings<S>(Space<S>&, std::string_view, const std::string&);
 #include <samestep/each_scalar.h>
 
 }  // namespace samestep
