@@ -13,11 +13,11 @@ BUILD = ROOT / "build" / "coverage"
 # What is looked at, and by which targets.
 GROUPS = {
     "collision": ("""
-        src/narrow_phase/collision.cpp src/narrow_phase/gjk.cpp src/narrow_phase/gjk.h src/narrow_phase/epa.cpp src/narrow_phase/clip.h src/narrow_phase/support.h src/narrow_phase/support_faces.h
+        src/narrow_phase/collision.cpp src/narrow_phase/gjk.cpp src/narrow_phase/gjk.h src/narrow_phase/epa.cpp src/narrow_phase/time_of_impact.cpp src/narrow_phase/clip.h src/narrow_phase/support.h src/narrow_phase/support_faces.h
         src/geometry/circle_shape.cpp src/geometry/segment_shape.cpp src/geometry/poly_shape.cpp src/geometry/shape.cpp src/geometry/shape_edges.h
         src/geometry/shape_geometry.h src/geometry/shape_query.cpp src/contacts/contact_geometry.h src/contacts/push_contacts.h
         src/broad_phase/bb_tree.cpp src/broad_phase/box_tree.cpp src/broad_phase/brute_force_index.cpp src/broad_phase/spatial_index.cpp""",
-                  ("collide", "gjk_epa", "hull", "bb_tree", "space", "snapshot", "scene")),
+                  ("collide", "gjk_epa", "time_of_impact", "hull", "bb_tree", "space", "snapshot", "scene")),
     "parsing": ("""
         src/snapshot/snapshot.cpp src/snapshot/space_codec.cpp src/state/canonical_reader.h src/state/compact.h src/math/decimal_double.cpp
         fixed/include/samestep/raw_decimal.h fixed/include/samestep/raw_parse_decimal.h fixed/include/samestep/fixed_text.h

@@ -4,8 +4,7 @@
 #include "geometry/shape_edges.h"
 #include "narrow_phase/clip.h"
 #include "narrow_phase/collision_functions.h"
-#include "narrow_phase/gjk.h"
-#include "narrow_phase/support.h"
+#include "narrow_phase/nearest.h"
 #include "narrow_phase/support_faces.h"
 
 namespace samestep {
@@ -88,25 +87,6 @@ bool touchFace(const PlacedShape<S>& a, const PlacedShape<S>& b, const FaceAxis<
   return false;
 }
 
-template <Scalar S>
-ClosestPoints<S> closestPoints(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
-                               CollisionStats* stats) {
-  // Across the line between the middles of the boxes, twice as long.
-  const Vector<S> axis = perp(Vector<S>((a.box.left - b.box.left) + (a.box.right - b.box.right),
-                                        (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
-  return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);
-}
-
-/// The edge of a shape that the search named, or the vertex as one without length, counter-clockwise.
-/// @param shift  of the shape's number in the second half of the id: 8 for A, 0 for B
-template <Scalar S>
-SupportEdge<S> namedEdge(const PlacedShape<S>& shape, const ClosestPoints<S>& closest, int shift) {
-  // The search goes round clockwise.
-  const int from = static_cast<int>(closest.id >> shift & 0xff),
-            to = static_cast<int>(closest.id >> (shift + 16) & 0xff);
-  return {shape.planes[from].v0, shape.planes[to].v0, from, to};
-}
-
 /// True if the places of each point lie opposite each other.
 template <Scalar S>
 bool areOpposite(const CollisionInfo<S>& info) {
@@ -117,30 +97,25 @@ bool areOpposite(const CollisionInfo<S>& info) {
   return all;
 }
 
-/// One point, at the places where the search found the shapes nearest, or the overlap least. Each is a vertex
-/// or lies between two of one shape, so that it is on the shape, whatever is rounded.
+/// One point, at the places where the search found the shapes nearest, or the overlap least.
 template <Scalar S>
 void touchWhereNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, const ClosestPoints<S>& closest,
                        CollisionInfo<S>& info) {
-  const SupportEdge<S> onA = namedEdge(a, closest, 8), onB = namedEdge(b, closest, 0);
-  // Ends of an edge of the Minkowski difference, along which the place nearest to the origin is looked for.
-  const Vector<S> n = closest.normal, from = onB.a - onA.a, to = onB.b - onA.b;
-  const S part = cross(from, n), whole = cross(from - to, n);
-  const auto place = [&](const PlacedShape<S>& shape, int vertex, const SupportEdge<S>& on) {
-    return vertex >= 0 ? shape.planes[vertex].v0 : pointAlong(on, part, whole);
-  };
+  const NearestPlaces<S> places(a, b, closest);
+  const Vector<S> n = closest.normal;
   const auto name = [](int vertex, const SupportEdge<S>& on) {
     return static_cast<std::uint32_t>(vertex >= 0 ? vertex : on.indexA);
   };
-  info.push(place(a, closest.vertexA, onA) + n * a.radius, place(b, closest.vertexB, onB) - n * b.radius,
-            name(closest.vertexA, onA) << 16 | name(closest.vertexB, onB));
+  info.push(places.onA + n * a.radius, places.onB - n * b.radius,
+            name(closest.vertexA, namedEdge(a, closest, 8)) << 16 |
+                name(closest.vertexB, namedEdge(b, closest, 0)));
 }
 
 /// Two shapes with edges, by the search for their nearest features.
 template <Scalar S>
 void touchNearest(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start, S margin,
                   CollisionInfo<S>& info, CollisionStats* stats) {
-  const ClosestPoints<S> closest = closestPoints(a, b, start, stats);
+  const ClosestPoints<S> closest = closestOf(a, b, start, stats);
   info.id = closest.id;
   if (closest.distance > a.radius + b.radius + margin || !endsMayTouch(a, b, closest)) return;
   const Vector<S> n = closest.normal;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "narrow_phase/sweep.h"
 
-#include "narrow_phase/gjk.h"
-#include "narrow_phase/support.h"
+#include "narrow_phase/nearest.h"
 
 namespace samestep {
 namespace {
@@ -12,30 +11,6 @@ template <Scalar S>
 inline constexpr S kMet = S(0x1p-15);
 /// Steps towards each other after which shapes that have not met pass each other.
 constexpr int kMaxAdvances = 16;
-
-/// Distance of two shapes, and the normal along which it is, from A to B.
-template <Scalar S>
-struct Gap {
-  S distance{};
-  Vector<S> normal{};
-};
-
-template <Scalar S>
-Gap<S> gapBetween(const PlacedShape<S>& a, const PlacedShape<S>& b) {
-  if (a.type == ShapeType::circle) {
-    const PointQueryInfo<S> nearest = pointQuery(b, a.center());
-    return {nearest.distance - a.radius, -nearest.gradient};
-  }
-  if (b.type == ShapeType::circle) {
-    const PointQueryInfo<S> nearest = pointQuery(a, b.center());
-    return {nearest.distance - b.radius, nearest.gradient};
-  }
-  const Vector<S> axis = perp(Vector<S>((a.box.left - b.box.left) + (a.box.right - b.box.right),
-                                        (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
-  const ClosestPoints<S> closest =
-      gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, 0, axis, nullptr);
-  return {closest.distance - (a.radius + b.radius), closest.normal};
-}
 
 /// A shape that is taken along a way.
 template <Scalar S>
