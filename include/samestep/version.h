@@ -7,7 +7,7 @@ namespace samestep {
 
 /// Changes whenever any result of a step changes, and only then. Every snapshot and recording carries it:
 /// two builds of the same revision give the same bits.
-inline constexpr std::uint32_t kSimulationRevision = 8;
+inline constexpr std::uint32_t kSimulationRevision = 9;
 
 /// Version of the library, "major.minor.patch".
 std::string_view version();
