@@ -307,10 +307,10 @@ TEST_F(ProgramTest, ChartWritesAPictureAndACsvAndTellsTheFront) {
 
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.out, HasSubstr("exact answer"));
-  EXPECT_THAT(outcome.out, HasSubstr("ms per step"));
+  EXPECT_THAT(outcome.out, HasSubstr("ms per simulated second"));
   EXPECT_THAT(outcome.error, HasSubstr("round 1 of 1"));
   EXPECT_THAT(contents(file("a.svg")), HasSubstr("</svg>"));
-  EXPECT_THAT(contents(file("a.csv")), HasSubstr("\npyramid:2,fixed soft step,fixed,substeps,4,"));
+  EXPECT_THAT(contents(file("a.csv")), HasSubstr("\npyramid:2,fixed soft step,fixed,60,substeps,4,"));
 }
 
 TEST_F(ProgramTest, EnvelopeTellsTheLimitsOfALadderAndWhatFailingMeans) {
