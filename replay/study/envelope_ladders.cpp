@@ -309,6 +309,15 @@ const Ladder kLadders[] = {
      [](const Setting& setting, int rung) {
        return holdsInScalarOf(setting, 0, [&](auto& trial) { return passIsLeftAlone(trial, rung); });
      }},
+    {"bounce", "bounces of an elastic box that is as high and flat as before",
+     "a box of 1 m without friction falls flat from 1.8 m, elasticity 1 like the floor",
+     "between one bounce and the next it comes more than 10 % higher or less high than 1.8 m, or it has "
+     "turned "
+     "by more than 0.01 rad",
+     kBounceTop,
+     [](const Setting& setting, int rung) {
+       return holdsInScalarOf(setting, 10, [&](auto& trial) { return bouncesKeepTheirHeight(trial, rung); });
+     }},
     {"shapes", "degenerate shapes, in turn, that rest on a floor for 10 s",
      "the shapes of replay/study/degenerate_shapes.cpp one by one, each alone on a body of 1 kg, fall from "
      "10 cm; "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solver/soft_step/restitution.h"
+#include "solver/restitution/restitution.h"
 
 #include <tuple>
 

@@ -28,6 +28,8 @@ struct ImpulseRow : ContactAxes<S> {
   S biasSum{};
   /// Impulses that bodies were given at first less than the sums said, u.
   S normalLacks{}, tangentLacks{};
+  /// Impulse of a blow that was solved before the forces of the step, as a speed of the lighter body, m/s.
+  S struckNormal{}, struckTangent{};
 };
 
 template <Scalar S>

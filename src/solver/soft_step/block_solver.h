@@ -12,9 +12,9 @@
 #include "base/budget.h"
 #include "solver/kernels/contact_block.h"
 #include "solver/kernels/soft_units.h"
+#include "solver/restitution/restitution.h"
 #include "solver/soft_step/block_groups.h"
 #include "solver/soft_step/block_memory.h"
-#include "solver/soft_step/restitution.h"
 
 namespace samestep {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/restitution/restitution.h"
 #include "solver/soft_step/block_solver.h"
-#include "solver/soft_step/restitution.h"
 
 namespace samestep {
 

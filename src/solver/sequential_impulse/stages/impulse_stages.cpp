@@ -53,18 +53,27 @@ void ImpulseStages<S>::prepare(StepContext<S>& step) {
     const std::uint32_t solverB = solverIndexOf(b);
     solver_.preStep(pair, solverA, solverB, bodies.valueAt(a), bodies.valueAt(b), slop, biasRate);
   }
+  blows_.strike(step, bodies_, solver_);
 }
 
 template <Scalar S>
 void ImpulseStages<S>::solve(StepContext<S>& step) {
   takeBodies(step);
+  if (blows_.struck()) blows_.allow(step, solver_);
   warmStart(step);
+  if (blows_.struck()) blows_.begin(solver_);
+  pass(step);
+  if (blows_.struck() && blows_.takeBack(step, solver_)) pass(step);
+  storeImpulses(step);
+  storeVelocities(step);
+}
+
+template <Scalar S>
+void ImpulseStages<S>::pass(StepContext<S>& step) {
   for (int i = 0; i < step.state.settings.iterations; ++i) {
     solver_.iterate();
     step.pay(Budget::kPerPairAndPass * solver_.rows.size());
   }
-  storeImpulses(step);
-  storeVelocities(step);
 }
 
 template <Scalar S>
@@ -99,8 +108,8 @@ void ImpulseStages<S>::storeImpulses(StepContext<S>& step) {
       Contact<S>& contact = pair.contacts[i];
       contact.normalSpeed = row.normalSum * row.normalScale;
       contact.tangentSpeed = row.tangentSum * row.tangentScale;
-      contact.normalTotal = (row.normalSum - row.normalLacks) * row.normalScale;
-      contact.tangentTotal = (row.tangentSum - row.tangentLacks) * row.tangentScale;
+      contact.normalTotal = (row.normalSum - row.normalLacks) * row.normalScale + row.struckNormal;
+      contact.tangentTotal = (row.tangentSum - row.tangentLacks) * row.tangentScale + row.struckTangent;
       pair.solvedNormal = row.normal;
       pair.solvedImpulse += rotate(row.normal, Vector<S>(contact.normalTotal, contact.tangentTotal));
     }

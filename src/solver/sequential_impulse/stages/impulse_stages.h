@@ -6,6 +6,7 @@
 
 #include "context/step_context.h"
 #include "solver/sequential_impulse/sequential_impulse.h"
+#include "solver/sequential_impulse/stages/impulse_blows.h"
 
 namespace samestep {
 
@@ -21,12 +22,14 @@ class ImpulseStages {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   std::uint32_t solverIndexOf(std::uint32_t body);
+  void pass(StepContext<S>& step);
   void takeBodies(const StepContext<S>& step);
   void warmStart(const StepContext<S>& step);
   void storeImpulses(StepContext<S>& step);
   void storeVelocities(StepContext<S>& step);
 
   ImpulseSolver<S> solver_;
+  ImpulseBlows<S> blows_;
   // The first has a number among the solver's bodies for each body slot; the second leads back.
   std::vector<std::uint32_t> solverIndex_;
   std::vector<std::uint32_t> bodies_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "solver/soft_step/restitution.h"
+#include "solver/restitution/restitution.h"
 
 #include "base/require_ieee.h"
 
@@ -10,8 +10,7 @@ namespace {
 template <Scalar S>
 inline constexpr S kMostChange = S(1 << 22);
 
-/// Points are solved so often, or until none changes by more than this, m/s.
-constexpr int kMostPasses = 100;
+/// Points are solved until none changes by more than this, m/s.
 template <Scalar S>
 inline constexpr S kStill = S(0x1p-28);
 
@@ -84,7 +83,7 @@ S Restitution<S>::rubPoint(BouncePoint<S>& point) {
   const S speed =
       relativeSpeed(t, point.tangentArmA, point.tangentArmB, a.velocity, b.velocity) + point.surface;
   const S k = S(1) + dot(point.tangentSpinA, point.tangentArmA, point.tangentSpinB, point.tangentArmB);
-  const S limit = max(heldProduct(point.friction, point.pressed), abs(point.rubbed));
+  const S limit = max(heldProduct(point.friction, point.pressed + point.rebound), abs(point.rubbed));
   const S u = clamp(point.rubbed - heldProduct(speed, reciprocal(k)), -limit, limit) - point.rubbed;
   point.rubbed += u;
   push(point, t, point.tangentSpinA, point.tangentSpinB, u);
@@ -107,15 +106,29 @@ void Restitution<S>::push(const BouncePoint<S>& point, const Vector<S>& axis, S 
 
 template <Scalar S>
 void Restitution<S>::press() {
-  for (int pass = 0; pass < kMostPasses; ++pass) {
-    S most = S(0);
+  const std::size_t most = passes(points.size());
+  for (std::size_t pass = 0; pass < most; ++pass) {
+    S change = S(0);
     for (std::size_t i = 0; i < points.size();) {
       const bool two = i + 1 < points.size() && points[i].pair == points[i + 1].pair;
       for (std::size_t k = i; k < i + (two ? 2 : 1); ++k) {
-        if (points[k].friction != S(0)) most = max(most, rubPoint(points[k]));
+        if (points[k].friction != S(0)) change = max(change, rubPoint(points[k]));
       }
-      most = max(most, two ? pressPair(points[i], points[i + 1]) : pressPoint(points[i]));
+      change = max(change, two ? pressPair(points[i], points[i + 1]) : pressPoint(points[i]));
       i += two ? 2 : 1;
+    }
+    if (change <= kStill<S>) return;
+  }
+}
+
+/// Lets points rub by all that they have given, which takes energy only.
+template <Scalar S>
+void Restitution<S>::rub() {
+  constexpr int kPasses = 10;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    S most = S(0);
+    for (BouncePoint<S>& point : points) {
+      if (point.friction != S(0)) most = max(most, rubPoint(point));
     }
     if (most <= kStill<S>) return;
   }
@@ -261,6 +274,7 @@ void Restitution<S>::solve() {
     const bool fixedA = bodies[point.bodyA].mass == S(0);
     point.rebound = point.rebound * balances_[groupOf(fixedA ? point.bodyB : point.bodyA)].part;
   }
+  rub();
 }
 
 #define SAMESTEP_EACH_SCALAR template class Restitution<S>;

@@ -82,6 +82,12 @@ class Restitution {
     next += is ? 1 : 0;
     return is;
   }
+  /// Number of passes over so many points at the most: many are solved less often, since the balance holds
+  /// for what has not come to its end, too.
+  static std::size_t passes(std::size_t points) {
+    constexpr std::size_t kMost = 100, kFewest = 10, kMostSolved = 6400;
+    return max(min(kMostSolved / max(points, std::size_t{1}), kMost), kFewest);
+  }
   /// Changes the velocities of bodies, which are marked, and sets the rebounds to what was given.
   void solve();
 
@@ -98,6 +104,7 @@ class Restitution {
   };
 
   void press();
+  void rub();
   S take(BouncePoint<S>& point, S u);
   S pressPoint(BouncePoint<S>& point);
   S pressPair(BouncePoint<S>& first, BouncePoint<S>& second);
