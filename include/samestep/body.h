@@ -22,6 +22,13 @@ enum class BodyType : std::uint8_t {
   staticBody = 2,     ///< Nothing; its velocity is zero.
 };
 
+/// Whether a step moves a body. MIS: none, Chipmunk's sleeping
+enum class Activity : std::uint8_t {
+  awake = 0,
+  asleep = 1,  ///< No step looks at it. Of a body that is not dynamic: nothing has moved it lately.
+  roused = 2,  ///< Was asleep when somebody changed it: the next step wakes it with its island.
+};
+
 /// Names a position or velocity function registered with the Space; 0 is the built-in one.
 using CallbackNumber = std::uint32_t;
 
@@ -160,14 +167,36 @@ class Body {
   void setTorque(S torque);
 
   /// The number of the function that moves it. MIS: bodySetPositionFunc
-  void setPositionFunc(CallbackNumber number) { positionFunc_ = number; }
+  void setPositionFunc(CallbackNumber number) { put(positionFunc_, number); }
   CallbackNumber positionFunc() const { return positionFunc_; }
   /// The number of the function that changes its velocity. MIS: bodySetVelocityFunc
-  void setVelocityFunc(CallbackNumber number) { velocityFunc_ = number; }
+  void setVelocityFunc(CallbackNumber number) { put(velocityFunc_, number); }
   CallbackNumber velocityFunc() const { return velocityFunc_; }
 
   void setUserData(std::uint64_t data) { userData_ = data; }
   std::uint64_t userData() const { return userData_; }
+
+  // Sleeping, see docs/sleeping.md. A setter that changes anything wakes the body, with its island as the
+  // next step begins, and counts its rest anew.
+
+  /// Whether steps leave it alone, as they do with an island at rest: see Settings::sleepTimeThreshold.
+  bool isSleeping() const { return activity_ == Activity::asleep && isDynamic(); }
+  Activity activity() const { return activity_; }
+  /// Wakes it.
+  void activate() { rouse(); }
+  /// Spares a dynamic body the wait: as if it had been at rest for long. It sleeps from the end of the first
+  /// step on that its island may sleep at, so never where nothing holds it.
+  void sleep() {
+    if (isDynamic() && activity_ != Activity::asleep) restTime_ = kMaxRestTime<S>;
+  }
+  /// Whether it, and what touches it, may ever sleep.
+  bool maySleep() const { return maySleep_ != 0; }
+  void setMaySleep(bool may);
+  /// For how long it has been at rest, s, counted while anything may sleep; 0 while it sleeps.
+  S restTime() const { return restTime_; }
+  /// Of a sleeper the lowest slot of its island, plus 1: they wake together. Else 0, unless it was woken by
+  /// hand since the last step.
+  std::uint32_t island() const { return island_; }
 
   /// World from body coordinates and back.
   Vector<S> toWorld(const Vector<S>& point) const { return transformPoint(transform(), point); }
@@ -228,6 +257,10 @@ class Body {
     visit("positionFunc", self.positionFunc_);
     visit("velocityFunc", self.velocityFunc_);
     visit("userData", self.userData_);
+    visit("restTime", self.restTime_);
+    visit("island", self.island_);
+    visit("activity", self.activity_);
+    visit("maySleep", self.maySleep_);
   }
   /// Computes what follows from the fields.
   void derive();
@@ -237,6 +270,22 @@ class Body {
 
  private:
   friend struct BodyAccess<S>;
+
+  /// Notes a change that whoever rests on the body, or it itself, may have to answer to.
+  void rouse() {
+    // What its own function does to it in a step is its motion.
+    if (stepping_ != 0) return;
+    restTime_ = S(0);
+    if (activity_ == Activity::asleep) activity_ = Activity::roused;
+  }
+  /// Sets a field; what was so already wakes nobody.
+  template <class T>
+  void put(T& field, const T& value) {
+    const bool same = field == value;
+    // Zeros of two signs are equal, and not the same.
+    field = value;
+    if (!same) rouse();
+  }
 
   struct Motion {
     Vector<S> velocity;
@@ -248,6 +297,8 @@ class Body {
   Motion accelerated(const Vector<S>& gravity, S damping, S dt) const;
   /// Acceleration by gravity, force and torque, per second.
   Motion acceleration(const Vector<S>& gravity) const;
+  /// Whether what it says of its rest may be.
+  bool restsWell() const;
   /// Moves the centre of mass within the body, whose material moves on as before.
   void moveCenter(const Vector<S>& center);
   /// Computes what follows from type, mass and moment.
@@ -297,6 +348,11 @@ class Body {
   std::uint64_t userData_ = 0;
   CallbackNumber positionFunc_ = 0;
   CallbackNumber velocityFunc_ = 0;
+  S restTime_{};
+  std::uint32_t island_ = 0;
+  Activity activity_ = Activity::awake;
+  std::uint8_t maySleep_ = 1;
+  std::uint8_t unused_[2] = {};
   // Follows from the state.
   Vector<S> rotation_{S(1), S(0)};
   Scaled<S> inverseMass_{};

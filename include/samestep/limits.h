@@ -54,6 +54,10 @@ inline constexpr S kMaxCenterOfMass = S(1 << 8);
 inline constexpr std::uint32_t kDefaultMaxPairs = 1u << 18;
 /// The most it may be told to hold.
 inline constexpr std::uint32_t kMostPairs = 1u << 28;
+/// Up to here it is counted how long a body has been at rest, seconds; the longest time after which bodies
+/// may be told to sleep.
+template <Scalar S>
+inline constexpr S kMaxRestTime = S(1 << 10);
 /// Seconds in one step.
 template <Scalar S>
 inline constexpr S kMaxTimeStep = S(1);

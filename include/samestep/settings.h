@@ -63,6 +63,14 @@ struct Settings {
   S bounceThreshold{1};
   /// Bodies are held within this distance of the origin along each axis, m.
   S worldExtent = kDefaultWorldExtent<S>;
+  /// For how long all bodies of an island have been at rest when it falls asleep, s, up to kMaxRestTime; 0:
+  /// nothing ever sleeps. See docs/sleeping.md.
+  S sleepTimeThreshold{};
+  /// A body is at rest while no point of it can be faster, m/s: |vx| + |vy| + |w| times how far its shapes
+  /// reach. With 0 only what stands still is.
+  S idleSpeedThreshold = ratio<S>(1, 20);
+
+  friend bool operator==(const Settings&, const Settings&) = default;
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -81,6 +89,8 @@ struct Settings {
     visit("contactMargin", self.contactMargin);
     visit("bounceThreshold", self.bounceThreshold);
     visit("worldExtent", self.worldExtent);
+    visit("sleepTimeThreshold", self.sleepTimeThreshold);
+    visit("idleSpeedThreshold", self.idleSpeedThreshold);
   }
 };
 

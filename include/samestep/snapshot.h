@@ -13,7 +13,7 @@ namespace samestep {
 // every other. docs/formats.md tells every byte. For rollback within one process, Space::save is faster.
 
 /// The format that saveSnapshot writes; loadSnapshot reads every version from 1 up to it. 0 was a trial.
-inline constexpr std::uint32_t kSnapshotVersion = 1;
+inline constexpr std::uint32_t kSnapshotVersion = kWorldFormat;
 
 /// Header of a snapshot: what its first bytes say.
 struct SnapshotInfo {

@@ -70,6 +70,8 @@ class Space {
   /// MIS: spaceGetCollisionPersistence
   std::uint32_t collisionPersistence() const { return state_.settings.collisionPersistence; }
   S worldExtent() const { return state_.settings.worldExtent; }
+  S sleepTimeThreshold() const { return state_.settings.sleepTimeThreshold; }
+  S idleSpeedThreshold() const { return state_.settings.idleSpeedThreshold; }
   /// Seconds of the last step, 0 before the first. MIS: spaceGetCurrentTimeStep
   S currentTimeStep() const { return state_.timeStep; }
   /// Steps made so far.
@@ -110,6 +112,12 @@ class Space {
   void setContactMargin(S margin);
   /// @throws ValueOutOfRange outside [0, 2^10]
   void setBounceThreshold(S speed);
+  /// Lets islands sleep that have been at rest for so long; 0: none. See docs/sleeping.md. Another value of
+  /// any setting wakes all.
+  /// @throws ValueOutOfRange outside [0, 2^10]
+  void setSleepTimeThreshold(S seconds);
+  /// @throws ValueOutOfRange outside [0, 2^10]
+  void setIdleSpeedThreshold(S speed);
   /// All of them at once, checked as by the setters.
   /// @throws as they do, and nothing is changed
   void setSettings(const Settings<S>& settings);

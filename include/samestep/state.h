@@ -42,6 +42,7 @@ struct WorldLimits {
   std::uint32_t bodies = 1u << 16;
   std::uint32_t shapes = 1u << 16;
   std::uint32_t pairs = kDefaultMaxPairs;
+  std::uint32_t restingPairs = kDefaultMaxPairs;
   std::uint32_t handlers = 1u << 12;
   /// Passes over all contacts in a step, by either solver: at most those that a Space takes.
   std::uint32_t iterations = 1000;
@@ -69,6 +70,10 @@ struct WorldState {
   SlotMap<Shape<S>, ShapeId> shapes;
   /// Sorted by Pair::before.
   std::vector<Pair<S>> pairs;
+  /// Those both of whose bodies rest: they sleep or, of a body that is not dynamic, nothing has moved it
+  /// since the last step. No step looks at them. Where a body was woken by hand, its pairs are still here
+  /// until the next step begins. Sorted by Pair::before.
+  std::vector<Pair<S>> restingPairs;
   /// Sorted by HandlerBinding::before.
   std::vector<HandlerBinding> handlers;
 
@@ -85,6 +90,8 @@ struct WorldState {
     visit(Section{"body", "more bodies than allowed", &WorldLimits::bodies}, worlds.bodies...);
     visit(Section{"shape", "more shapes than allowed", &WorldLimits::shapes}, worlds.shapes...);
     visit(Section{"pair", "more pairs than allowed", &WorldLimits::pairs}, worlds.pairs...);
+    visit(Section{"resting pair", "more resting pairs than allowed", &WorldLimits::restingPairs},
+          worlds.restingPairs...);
     visit(Section{"handler", "more handlers than allowed", &WorldLimits::handlers}, worlds.handlers...);
   }
 };

@@ -57,6 +57,7 @@ void LocalPlanes<S>::release(std::uint32_t geometry) {
 template <Scalar S>
 void Derived<S>::copyFrom(const Derived& other) {
   cached = false;
+  forgetWhoMoves();
   shapesHashKnown = other.shapesHashKnown;
   shapesHash = other.shapesHash;
   if (!other.cached) return;
@@ -111,6 +112,7 @@ void Derived<S>::completePairs(WorldState<S>& world) {
   if (!surfacesLacking) return;
   surfacesLacking = false;
   for (Pair<S>& pair : world.pairs) takeShapesSurfaces(world, pair);
+  for (Pair<S>& pair : world.restingPairs) takeShapesSurfaces(world, pair);
   surfacesKnown = true;
 }
 
@@ -192,13 +194,25 @@ void Derived<S>::touch(std::uint32_t body) {
 }
 
 template <Scalar S>
-void Derived<S>::forgetTouched() {
-  for (const std::uint32_t body : touched) isTouched[body] = 0;
-  touched.clear();
+void Derived<S>::forgetTouched(const WorldState<S>& world) {
+  std::size_t kept = 0;
+  for (const std::uint32_t slot : touched) {
+    const bool alive = world.bodies.aliveAt(slot);
+    const Body<S>& body = world.bodies.valueAt(slot);
+    const bool pulled = body.force() != Vector<S>() || body.torque() != S(0);
+    // Within a step a callback may have roused it, or given it a force that only the next step takes away.
+    if (alive && (body.activity() == Activity::roused || (body.type() == BodyType::staticBody && pulled))) {
+      touched[kept++] = slot;
+    } else {
+      isTouched[slot] = 0;
+    }
+  }
+  touched.resize(kept);
 }
 
 template <Scalar S>
 void Derived<S>::linkShape(std::uint32_t body, std::uint32_t shape) {
+  compoundKnown = false;
   // Shapes of a body are linked by rising slot. A new shape nearly always has the highest one.
   std::uint32_t before = lastShape[body];
   if (before != kNone && before > shape) {
@@ -213,6 +227,7 @@ void Derived<S>::linkShape(std::uint32_t body, std::uint32_t shape) {
 
 template <Scalar S>
 void Derived<S>::unlinkShape(std::uint32_t body, std::uint32_t shape) {
+  compoundKnown = false;
   std::uint32_t before = kNone;
   for (std::uint32_t i = firstShape[body]; i != shape; i = nextShape[i]) before = i;
   (before == kNone ? firstShape[body] : nextShape[before]) = nextShape[shape];
@@ -294,6 +309,7 @@ void Derived<S>::compute(const WorldState<S>& world) {
   geometry.assign(world.shapes.slots(), kNone);
   staticTree.clear();
   dynamicTree.clear();
+  forgetWhoMoves();
   world.shapes.each([&](ShapeId id, const Shape<S>& shape) {
     if (budget != nullptr && (id.index + 1) % Budget::kObjectsAtOnce == 0) {
       budget->pay(Budget::kPerObject * Budget::kObjectsAtOnce);
@@ -322,10 +338,16 @@ bool Derived<S>::movePlaced(const WorldState<S>& world, std::uint32_t bodyIndex)
 template <Scalar S>
 void Derived<S>::putBoxesOf(const WorldState<S>& world, std::uint32_t bodyIndex) {
   const Body<S>& holder = world.bodies.valueAt(bodyIndex);
-  const bool isStatic = holder.type() == BodyType::staticBody;
+  const bool isStatic = holder.type() == BodyType::staticBody || holder.activity() == Activity::asleep;
   for (std::uint32_t i = firstShape[bodyIndex]; i != kNone; i = nextShape[i]) {
     putBox(i, isStatic, placed[i].box, holder.velocity());
   }
+}
+
+template <Scalar S>
+void Derived<S>::placeOne(const WorldState<S>& world, std::uint32_t shape) {
+  const Body<S>& holder = world.bodies.valueAt(traits[shape].body);
+  place(Transform<S>::rigid(holder.position(), holder.rotation()), placed[shape]);
 }
 
 template <Scalar S>
@@ -345,33 +367,64 @@ void Derived<S>::refresh(const WorldState<S>& world) {
 }
 
 template <Scalar S>
-void Derived<S>::findBodyPairs(const WorldState<S>& world) {
+void Derived<S>::findBodyPairs(const WorldState<S>& world, const std::vector<Pair<S>>& pairs, BodyPairs& to) {
   const std::uint32_t slots = world.bodies.slots();
-  std::vector<std::uint32_t>& start = bodyPairs.start;
+  std::vector<std::uint32_t>& start = to.start;
   start.assign(slots + 1, 0);
   const auto eachEnd = [&](auto&& visit) {
-    for (std::uint32_t i = 0; i < world.pairs.size(); ++i) {
-      const Pair<S>& pair = world.pairs[i];
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+      const Pair<S>& pair = pairs[i];
       visit(world.shapes.valueAt(pair.a.index).body().index, i);
       visit(world.shapes.valueAt(pair.b.index).body().index, i);
     }
   };
   eachEnd([&](std::uint32_t body, std::uint32_t) { ++start[body + 1]; });
   for (std::uint32_t body = 0; body < slots; ++body) start[body + 1] += start[body];
-  bodyPairs.pairs.resize(start[slots]);
-  bodyPairs.fill = start;
-  eachEnd([&](std::uint32_t body, std::uint32_t pair) { bodyPairs.pairs[bodyPairs.fill[body]++] = pair; });
-  bodyPairs.known = true;
+  to.pairs.resize(start[slots]);
+  to.fill = start;
+  eachEnd([&](std::uint32_t body, std::uint32_t pair) { to.pairs[to.fill[body]++] = pair; });
+  to.known = true;
 }
 
 template <Scalar S>
-std::span<const std::uint32_t> Derived<S>::pairsOf(const WorldState<S>& world, BodyId id) {
+std::span<const std::uint32_t> Derived<S>::pairsOf(const WorldState<S>& world, BodyId id,
+                                                   const std::vector<Pair<S>>& pairs, BodyPairs& known) {
   world.bodies.template requireAlive<Fault::BodyNotFound>(id, "shapes or contacts of a body");
-  if (!bodyPairs.known) findBodyPairs(world);
+  if (!known.known) findBodyPairs(world, pairs, known);
   // A body added since then touches nothing yet.
-  if (id.index + 1 >= bodyPairs.start.size()) return {};
-  return {bodyPairs.pairs.data() + bodyPairs.start[id.index],
-          bodyPairs.pairs.data() + bodyPairs.start[id.index + 1]};
+  if (id.index + 1 >= known.start.size()) return {};
+  return {known.pairs.data() + known.start[id.index], known.pairs.data() + known.start[id.index + 1]};
+}
+
+template <Scalar S>
+void Derived<S>::findActive(const WorldState<S>& world) {
+  if (activeKnown) return;
+  const auto& bodies = world.bodies;
+  active.clear();
+  sleeps.assign(bodies.slots(), 0);
+  mostSleepers = 0;
+  bodies.each([&](BodyId id, const Body<S>& body) {
+    if (body.type() == BodyType::staticBody) return;
+    if (body.activity() == Activity::awake) {
+      active.push_back(id.index);
+    } else if (body.isDynamic()) {
+      sleeps[id.index] = 1;
+      ++mostSleepers;
+    }
+  });
+  activeKnown = true;
+}
+
+template <Scalar S>
+bool Derived<S>::hasCompound(const WorldState<S>& world) {
+  if (!compoundKnown) {
+    someCompound_ = false;
+    for (std::uint32_t i = 0; i < firstShape.size() && !someCompound_; ++i) {
+      someCompound_ = isCompound(i) && world.bodies.valueAt(i).type() != BodyType::staticBody;
+    }
+    compoundKnown = true;
+  }
+  return someCompound_;
 }
 
 #define SAMESTEP_EACH_SCALAR     \

@@ -184,7 +184,8 @@ struct Derived {
   std::vector<Plane<S>> planes;
   LocalPlanes<S> localPlanes;
   std::vector<std::uint32_t> geometry;  // Geometry of each shape, in localPlanes.
-  // Bodies that may have been moved by hand since the last step, each once.
+  // Bodies that may have been moved by hand since the last step, each once; and those that the next one
+  // wakes.
   std::vector<std::uint32_t> touched;
   std::vector<std::uint8_t> isTouched;
   std::vector<std::uint32_t> planeRoom;
@@ -202,6 +203,15 @@ struct Derived {
   /// asked there must not change its result.
   bool keepPlaced = false;
   BodyPairs bodyPairs;
+  BodyPairs restingPairs;
+
+  // Who moves, in no copy either: slots of bodies that steps move, by rising slot, and of each slot whether
+  // it is a dynamic body that sleeps.
+  bool activeKnown = false;
+  std::vector<std::uint32_t> active;
+  std::vector<std::uint8_t> sleeps;
+  /// How many sleepers there are at most; kNone where nobody has counted.
+  std::uint32_t mostSleepers = kNone;
 
   /// Computes all that was forgotten.
   void ensure(const WorldState<S>& world) {
@@ -210,7 +220,36 @@ struct Derived {
   /// Forgets everything. Changes no result.
   void forget() {
     cached = false;
-    bodyPairs.known = false;
+    bodyPairs.known = restingPairs.known = false;
+    forgetWhoMoves();
+  }
+  void forgetWhoMoves() {
+    activeKnown = compoundKnown = false;
+    mostSleepers = kNone;
+  }
+  /// Brings `active` and `sleeps` up to date.
+  void findActive(const WorldState<S>& world);
+  /// False only if nothing sleeps.
+  bool anySleeps(const WorldState<S>& world) {
+    if (mostSleepers == kNone) findActive(world);
+    return mostSleepers != 0;
+  }
+  /// Places one shape where its body is.
+  void placeOne(const WorldState<S>& world, std::uint32_t shape);
+  /// Calls visit(body slot) for each shape of a sleeper that the box of a shape is near and that may touch
+  /// it.
+  template <class Visit>
+  void eachSleeperNear(const WorldState<S>& world, std::uint32_t shape, Visit&& visit) {
+    const Settings<S>& settings = world.settings;
+    const S margin = settings.solver == SolverKind::softStep ? settings.contactMargin : S(0);
+    const BB<S> grown = inflate(placed[shape].box, margin);
+    staticTree.collectIn(grown, near_);
+    for (const std::uint32_t other : near_) {
+      if (!world.bodies.valueAt(traits[other].body).isSleeping()) continue;
+      if (mayCollide(traits[shape], traits[other]) && intersects(grown, placed[other].box)) {
+        visit(traits[other].body);
+      }
+    }
   }
   /// Sets the surfaces of pairs that came from elsewhere.
   void completePairs(WorldState<S>& world);
@@ -250,22 +289,27 @@ struct Derived {
 
   /// Tells whether a body has several shapes; hasCompound, whether one that may move has.
   bool isCompound(std::uint32_t body) const { return firstShape[body] != lastShape[body]; }
-  bool hasCompound() const {
-    for (std::uint32_t i = 0; i < firstShape.size(); ++i) {
-      if (isCompound(i) && poses[i].type != BodyType::staticBody) return true;
-    }
-    return false;
-  }
+  bool hasCompound(const WorldState<S>& world);
 
   /// Notes that a body may have been moved by hand.
   void touch(std::uint32_t body);
   void touchAll(const WorldState<S>& world) {
     world.bodies.each([this](BodyId id, const Body<S>&) { touch(id.index); });
   }
-  void forgetTouched();
+  /// All but those that the next step looks at: see isRoused.
+  void forgetTouched(const WorldState<S>& world);
 
   /// The pairs of a body, by rising number. O(its pairs) after the first call of a step.
-  std::span<const std::uint32_t> pairsOf(const WorldState<S>& world, BodyId id);
+  std::span<const std::uint32_t> pairsOf(const WorldState<S>& world, BodyId id) {
+    return pairsOf(world, id, world.pairs, bodyPairs);
+  }
+  /// The same of those that rest.
+  std::span<const std::uint32_t> restingPairsOf(const WorldState<S>& world, BodyId id) {
+    return pairsOf(world, id, world.restingPairs, restingPairs);
+  }
+
+  /// Whether a body that may move has several shapes, if that is known.
+  bool compoundKnown = false;
 
  private:
   /// Points each placed shape to its planes.
@@ -273,7 +317,12 @@ struct Derived {
   void countSurfaces();
   void compute(const WorldState<S>& world);
   void putBox(std::uint32_t shape, bool isStatic, const BB<S>& box, const Vector<S>& velocity);
-  void findBodyPairs(const WorldState<S>& world);
+  static void findBodyPairs(const WorldState<S>& world, const std::vector<Pair<S>>& pairs, BodyPairs& to);
+  static std::span<const std::uint32_t> pairsOf(const WorldState<S>& world, BodyId id,
+                                                const std::vector<Pair<S>>& pairs, BodyPairs& known);
+
+  bool someCompound_ = false;
+  std::vector<IndexKey> near_;
 };
 
 #define SAMESTEP_EACH_SCALAR extern template struct Derived<S>;

@@ -52,9 +52,10 @@ struct StepEvents {
 
   void begin(const WorldState<S>& world) { held.assign(world.bodies.slots(), 0); }
   /// Lists what was held, by body id.
-  void listRange(const WorldState<S>& world) {
+  /// @param moved  the slots of those that the step moved
+  void listRange(const WorldState<S>& world, const std::vector<std::uint32_t>& moved) {
     range.clear();
-    for (std::uint32_t i = 0; i < held.size(); ++i) {
+    for (const std::uint32_t i : moved) {
       if (held[i] != 0) [[unlikely]]
         range.push_back({world.bodies.idAt(i), held[i]});
     }

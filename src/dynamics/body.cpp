@@ -80,6 +80,8 @@ template <Scalar S>
 Body<S> Body<S>::detached() const {
   Body copy = *this;
   copy.id_ = {};
+  copy.activity_ = Activity::awake;
+  copy.island_ = 0;
   copy.extent_ = kMaxWorldExtent<S>;
   return copy;
 }
@@ -102,7 +104,7 @@ void Body<S>::deriveMass() {
 
 template <Scalar S>
 bool Body<S>::wellFormed() const {
-  if (type_ > BodyType::staticBody || rotates_ > 1) return false;
+  if (type_ > BodyType::staticBody || rotates_ > 1 || !restsWell()) return false;
   if (!(mass_ == S(0) || (mass_ >= kMinMass<S> && mass_ <= kMaxMass<S>))) return false;
   // Shapes of any supported size and mass add up to no more, with room to spare.
   const Scaled<S> zero{};
@@ -119,9 +121,27 @@ bool Body<S>::wellFormed() const {
 }
 
 template <Scalar S>
+bool Body<S>::restsWell() const {
+  if (activity_ > Activity::roused || maySleep_ > 1) return false;
+  if (!(restTime_ >= S(0) && restTime_ <= kMaxRestTime<S>)) return false;
+  if (activity_ == Activity::roused) return true;
+  const bool asleep = activity_ == Activity::asleep;
+  if ((island_ != 0) != (asleep && isDynamic())) return false;
+  const Vector<S> none{};
+  return !asleep || (velocity_ == none && angularVelocity_ == S(0));
+}
+
+template <Scalar S>
+void Body<S>::setMaySleep(bool may) {
+  maySleep_ = may ? 1 : 0;
+  if (!may) rouse();
+}
+
+template <Scalar S>
 void Body<S>::setType(BodyType type) {
   require<Fault::AttachedBody>(!id_.valid(), "Body::setType: the body is in a Space, as ", id_,
                                "; its type is changed by Space::setType");
+  if (type != type_) rouse();
   type_ = type;
   forgetBias();
   if (type == BodyType::staticBody) {
@@ -142,7 +162,7 @@ void Body<S>::setMass(S mass) {
                                  ", only a dynamic one has a mass");
   requireMass(mass, "Body::setMass");
 
-  mass_ = mass;
+  put(mass_, mass);
   derive();
 }
 
@@ -152,8 +172,8 @@ void Body<S>::setMoment(S moment) {
                                  ", only a dynamic one has a moment");
   requireMoment(moment, "Body::setMoment");
 
-  moment_ = toScaled(moment);
-  rotates_ = 1;
+  put(moment_, toScaled(moment));
+  put(rotates_, std::uint8_t{1});
   derive();
 }
 
@@ -165,8 +185,8 @@ void Body<S>::setMassProperties(const MassProperties<S>& properties) {
                               kMinMass<S>, " to ", kMaxMass<S>, " kg");
   requireWithin(properties.centerOfMass, kMaxCenterOfMass<S>, "a body: centre of mass is ", " m");
 
-  mass_ = mass;
-  moment_ = properties.moment;
+  put(mass_, mass);
+  put(moment_, properties.moment);
   moveCenter(properties.centerOfMass);
   derive();
 }
@@ -195,7 +215,7 @@ void Body<S>::moveCenter(const Vector<S>& center) {
     velocityBias_ = heldWithin(velocityBias_ + (after * angularVelocityBias_ - before * angularVelocityBias_),
                                kMaxSpeed<S>);
   }
-  centerOfMass_ = center;
+  put(centerOfMass_, center);
   center_ = origin + rotate(centerOfMass_, rotation_);
 }
 
@@ -205,7 +225,7 @@ void Body<S>::setPosition(const Vector<S>& position) {
   requireWithin(position, stepping_ != 0 ? kMaxWorldExtent<S> : extent_, "Body::setPosition: position is ",
                 " m");
 
-  center_ = position + rotate(centerOfMass_, rotation_);
+  put(center_, position + rotate(centerOfMass_, rotation_));
   // A push out of where it no longer is.
   forgetBias();
 }
@@ -224,14 +244,14 @@ void Body<S>::setVelocity(const Vector<S>& velocity) {
                               "Body::setVelocity: velocity is ", velocity,
                               " m/s, allowed is 0 for a static body");
 
-  velocity_ = velocity;
+  put(velocity_, velocity);
 }
 
 template <Scalar S>
 void Body<S>::setForce(const Vector<S>& force) {
   requireWithin(force, kMaxForce<S>, "Body::setForce: force is ", " N");
 
-  force_ = force;
+  put(force_, force);
 }
 
 template <Scalar S>
@@ -239,7 +259,7 @@ void Body<S>::setAngle(S angle) {
   requireWithin(angle, kMaxAngle<S>, "Body::setAngle: angle is ", " rad");
   const Vector<S> origin = position();
 
-  angle_ = angle;
+  put(angle_, angle);
   const SinCos<S> turn = sincos(angle);
   rotation_ = {turn.cos, turn.sin};
   center_ = origin + rotate(centerOfMass_, rotation_);
@@ -254,14 +274,14 @@ void Body<S>::setAngularVelocity(S angularVelocity) {
                               "Body::setAngularVelocity: angular velocity is ", angularVelocity,
                               " rad/s, allowed is 0 for a static body");
 
-  angularVelocity_ = angularVelocity;
+  put(angularVelocity_, angularVelocity);
 }
 
 template <Scalar S>
 void Body<S>::setTorque(S torque) {
   requireWithin(torque, kMaxForce<S>, "Body::setTorque: torque is ", " N m");
 
-  torque_ = torque;
+  put(torque_, torque);
 }
 
 template <Scalar S>
@@ -284,12 +304,15 @@ typename Body<S>::Motion Body<S>::pushed(const Vector<S>& impulse, const Vector<
 template <Scalar S>
 void Body<S>::applyImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
   const Motion change = pushed(impulse, worldPoint);
-  if (isDynamic()) holdVelocity({velocity_ + change.velocity, angularVelocity_ + change.angularVelocity});
+  if (!isDynamic()) return;
+  if (change.velocity != Vector<S>() || change.angularVelocity != S(0)) rouse();
+  holdVelocity({velocity_ + change.velocity, angularVelocity_ + change.angularVelocity});
 }
 
 template <Scalar S>
 void Body<S>::applyBiasImpulse(const Vector<S>& impulse, const Vector<S>& worldPoint) {
   const Motion change = pushed(impulse, worldPoint);
+  if (change.velocity != Vector<S>() || change.angularVelocity != S(0)) rouse();
   velocityBias_ = heldWithin(velocityBias_ + change.velocity, kMaxSpeed<S>);
   angularVelocityBias_ =
       clamp(angularVelocityBias_ + change.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
@@ -309,8 +332,8 @@ void Body<S>::applyForce(const Vector<S>& force, const Vector<S>& worldPoint) {
   requireWithin(sum, kMaxForce<S>, "Body::applyForce: the sum of forces is ", " N");
   requireWithin(torque, kMaxForce<S>, "Body::applyForce: the sum of torques is ", " N m");
 
-  force_ = sum;
-  torque_ = torque;
+  put(force_, sum);
+  put(torque_, torque);
 }
 
 template <Scalar S>
@@ -392,6 +415,7 @@ void Body<S>::updatePosition(S dt) {
     requireWithin(turned, kMaxAngle<S>, "Body::updatePosition: it leads to an angle of ", " rad");
   }
 
+  if (moved != center_ || turned != angle_) rouse();
   held_ |= holdPosition(dt, kMaxWorldExtent<S>);
 }
 
@@ -411,6 +435,7 @@ void Body<S>::updateVelocity(const Vector<S>& gravity, S damping, S dt) {
                   " rad/s");
   }
 
+  if (motion.velocity != velocity_ || motion.angularVelocity != angularVelocity_) rouse();
   held_ |= holdVelocity(motion);
   force_ = {};
   torque_ = S(0);

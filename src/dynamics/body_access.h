@@ -19,6 +19,34 @@ struct BodyAccess {
     body.id_ = id;
     body.extent_ = worldExtent;
   }
+  /// Of what enters a Space.
+  static void begin(Body<S>& body) {
+    body.activity_ = Activity::awake;
+    body.island_ = 0;
+  }
+  /// A body in place of another one that may have slept.
+  static void takePlaceOf(Body<S>& body, const Body<S>& before) {
+    if (before.activity_ == Activity::awake) return;
+    body.activity_ = Activity::roused;
+    body.island_ = before.island_;
+    body.restTime_ = S(0);
+  }
+  static void rouse(Body<S>& body) { body.rouse(); }
+  static void wake(Body<S>& body) {
+    body.activity_ = Activity::awake;
+    body.island_ = 0;
+  }
+  /// @param island  0 of one that is not dynamic
+  static void fallAsleep(Body<S>& body, std::uint32_t island) {
+    body.activity_ = Activity::asleep;
+    body.island_ = island;
+    body.restTime_ = S(0);
+    body.velocity_ = {};
+    body.angularVelocity_ = S(0);
+    body.forgetBias();
+    clearForces(body);
+  }
+  static void setRestTime(Body<S>& body, S seconds) { body.restTime_ = seconds; }
   /// Reason why the body cannot be stepped, or nullptr.
   static const char* cannotStep(const Body<S>& body) { return body.cannotStep(); }
   static Motion accelerated(const Body<S>& body, const Vector<S>& gravity, S damping, S dt) {

@@ -59,12 +59,7 @@ void writeInfo(SpanSink& sink, const SnapshotInfo& info) {
 template <Scalar S>
 WorldState<S> readWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset, std::uint32_t version,
                         const WorldLimits& limits) {
-  switch (version) {
-    case kSnapshotVersion:
-      return decodeWorld<S>(bytes, offset, limits);
-    default:
-      failFormat(kVersionAt, "a snapshot of a format version that cannot be read");
-  }
+  return decodeWorld<S>(bytes, offset, limits, version);
 }
 
 template <Scalar S>

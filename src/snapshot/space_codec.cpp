@@ -27,6 +27,10 @@ struct FieldFlaw {
   void operator()(const Section&, const T&) {}
 };
 
+/// Fields and sections that worlds have since format 2.
+constexpr const char* kSince2[] = {"sleepTimeThreshold", "idleSpeedThreshold", "restTime",    "island",
+                                   "activity",           "maySleep",           "resting pair"};
+
 /// Reads the fields and sections of one world.
 template <Scalar S>
 class WorldReader {
@@ -38,6 +42,7 @@ class WorldReader {
     WorldState<S>::sections(*this, world_);
     FieldFlaw<S> fields{check_};
     WorldState<S>::sections(fields, world_);
+    if (fields.found == nullptr) fields.found = check_.flawOfRest();
     if (fields.found != nullptr) failFormat(start, fields.found);
     return std::move(world_);
   }
@@ -71,6 +76,7 @@ class WorldReader {
 
   template <class T>
   void operator()(const Section& section, std::vector<T>& items) {
+    if (bytes_.lacks(section.object)) return;
     items.resize(static_cast<std::size_t>(countOf<std::uint64_t>(section)));
     CompactReader records(bytes_);
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -173,10 +179,11 @@ void encodeWorld(const WorldState<S>& world, std::vector<std::uint8_t>& bytes) {
 
 template <Scalar S>
 WorldState<S> decodeWorld(std::span<const std::uint8_t> bytes, std::uint64_t& offset,
-                          const WorldLimits& limits) {
+                          const WorldLimits& limits, std::uint32_t format) {
   // Rotations and inverse masses follow from what is read.
   requireSoundArithmetic<S>();
   ByteReader reader(bytes, offset);
+  if (format < 2) reader.setLacking(kSince2);
   WorldState<S> world = WorldReader<S>(reader, limits).world();
   offset = reader.offset();
   return world;
@@ -186,13 +193,15 @@ template <Scalar S>
 const char* flawOf(const WorldState<S>& world, const WorldLimits& limits) {
   WorldFlaw<S> flaw(world, limits);
   WorldState<S>::sections(flaw, world);
+  flaw.finish();
   return flaw.found;
 }
 
-#define SAMESTEP_EACH_SCALAR                                                                                \
-  template std::uint64_t encodeWorld<S>(const WorldState<S>&, std::span<std::uint8_t>);                     \
-  template void encodeWorld<S>(const WorldState<S>&, std::vector<std::uint8_t>&);                           \
-  template WorldState<S> decodeWorld<S>(std::span<const std::uint8_t>, std::uint64_t&, const WorldLimits&); \
+#define SAMESTEP_EACH_SCALAR                                                                               \
+  template std::uint64_t encodeWorld<S>(const WorldState<S>&, std::span<std::uint8_t>);                    \
+  template void encodeWorld<S>(const WorldState<S>&, std::vector<std::uint8_t>&);                          \
+  template WorldState<S> decodeWorld<S>(std::span<const std::uint8_t>, std::uint64_t&, const WorldLimits&, \
+                                        std::uint32_t);                                                    \
   template const char* flawOf<S>(const WorldState<S>&, const WorldLimits&);
 #include <samestep/each_scalar.h>
 

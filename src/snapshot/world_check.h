@@ -15,7 +15,9 @@ const char* flawOfSettings(const Settings<S>& settings) {
   const auto in = [](S value, S low, S high) { return value >= low && value <= high; };
   const bool both = settings.solver <= SolverKind::softStep && settings.precision <= ContactPrecision::fast &&
                     within(settings.gravity, kMaxAcceleration<S>) && in(settings.damping, S(0), S(1)) &&
-                    settings.worldExtent > S(0) && settings.worldExtent <= kMaxWorldExtent<S>;
+                    settings.worldExtent > S(0) && settings.worldExtent <= kMaxWorldExtent<S> &&
+                    in(settings.sleepTimeThreshold, S(0), kMaxRestTime<S>)&&in(settings.idleSpeedThreshold,
+                                                                               S(0), kMaxSpeed<S>);
   const bool sequential = settings.iterations >= 1 && settings.iterations <= 1000 &&
                           in(settings.collisionSlop, S(0), S(256)) && in(settings.collisionBias, S(0), S(1));
   const bool soft =
@@ -77,12 +79,14 @@ class WorldCheck {
     return good ? nullptr : "there is no static body";
   }
 
-  const char* flawOf(BodyId, const Body<S>& body) const {
-    return body.wellFormed() ? nullptr : "a body is malformed";
+  const char* flawOf(BodyId id, const Body<S>& body) const {
+    return body.wellFormed() && body.island() <= id.index + 1 ? nullptr : "a body is malformed";
   }
   /// @param shape  stays where it is as long as this object lives
   const char* flawOf(ShapeId id, const Shape<S>& shape);
   const char* flawOf(const Pair<S>& pair) const;
+  /// Of both lists of pairs, when they are read.
+  const char* flawOfRest() const;
   const char* flawOf(const HandlerBinding& binding) const {
     const bool good = binding.kind <= HandlerBinding::Kind::fallback && binding.number != 0;
     return good ? nullptr : "a handler is malformed";
@@ -136,6 +140,22 @@ const char* WorldCheck<S>::flawOf(const Pair<S>& pair) const {
   return pair.manifold == Manifold::touching ? flawOfKept(pair) : nullptr;
 }
 
+template <Scalar S>
+const char* WorldCheck<S>::flawOfRest() const {
+  const auto rests = [&](ShapeId shape) {
+    const std::uint32_t body = world_.shapes.valueAt(shape.index).body().index;
+    return world_.bodies.valueAt(body).activity() == Activity::asleep;
+  };
+  auto resting = world_.restingPairs.begin();
+  for (const Pair<S>& pair : world_.pairs) {
+    if (rests(pair.a) && rests(pair.b)) return "a pair rests among those that do not";
+    while (resting != world_.restingPairs.end() && Pair<S>::before(*resting, pair)) ++resting;
+    if (resting != world_.restingPairs.end() && !Pair<S>::before(pair, *resting))
+      return "a pair is there twice";
+  }
+  return nullptr;
+}
+
 /// Looks for the first flaw of a whole world.
 template <Scalar S>
 class WorldFlaw {
@@ -164,6 +184,11 @@ class WorldFlaw {
       if (found == nullptr && before != nullptr && !T::before(*before, record)) found = kNotInOrder;
       before = &record;
     }
+  }
+
+  /// When all sections were visited.
+  void finish() {
+    if (found == nullptr) found = check_.flawOfRest();
   }
 
   static constexpr const char* kNotInOrder = "a list is not in order";

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string_view>
 #include <type_traits>
 
 #include <samestep/error.h>
@@ -27,6 +29,14 @@ class ByteReader {
     if (!condition) fail(reason);
   }
 
+  /// Names fields that the bytes, of an earlier format, do not have: FieldReader leaves those as they are.
+  void setLacking(std::span<const char* const> names) { lacking_ = names; }
+  bool lacks(std::string_view name) const {
+    if (lacking_.empty()) [[likely]]
+      return false;
+    return std::find(lacking_.begin(), lacking_.end(), name) != lacking_.end();
+  }
+
   /// @throws FormatError where fewer are left
   std::span<const std::uint8_t> take(std::uint64_t count) {
     require(count <= remaining(), "cut short");
@@ -44,6 +54,7 @@ class ByteReader {
  private:
   std::span<const std::uint8_t> bytes_;
   std::uint64_t offset_;
+  std::span<const char* const> lacking_;
 };
 
 /// The inverse of CanonicalWriter, by the same fields() lists. Numbers are taken as they come, but those with
@@ -55,7 +66,11 @@ class FieldReader {
   explicit FieldReader(Source& source) : source_(source) {}
 
   template <class T>
-  void operator()(const char*, T& value) {
+  void operator()(const char* name, T& value) {
+    if constexpr (requires { source_.lacks(name); }) {
+      if (source_.lacks(name)) [[unlikely]]
+        return;
+    }
     get(value);
   }
 

@@ -171,6 +171,8 @@ class CompactReader {
     /// Offset of the record.
     std::uint64_t offset() const { return bytes_.offset(); }
 
+    bool lacks(const char* name) const { return bytes_.lacks(name); }
+
     template <unsigned kSize>
     [[gnu::always_inline]] std::uint64_t load() {
       if (index_ % kCompactGroup == 0) open();

@@ -10,6 +10,7 @@
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
 #include "dynamics/body_access.h"
+#include "islands/rouse.h"
 
 namespace samestep {
 
@@ -30,14 +31,18 @@ void Objects<S>::insert(Context& world, const Body<S>& body, BodyId id) {
   world.derived.ensure(world.state);
   world.derived.growBodies(max(world.state.bodies.slots(), id.index + 1));
   world.state.bodies.store(id, body);
-  BodyAccess<S>::attach(world.state.bodies.valueAt(id.index), world.state.bodies.idAt(id.index),
-                        world.state.settings.worldExtent);
+  Body<S>& own = world.state.bodies.valueAt(id.index);
+  BodyAccess<S>::attach(own, world.state.bodies.idAt(id.index), world.state.settings.worldExtent);
+  BodyAccess<S>::begin(own);
+  world.derived.activeKnown = false;
+  world.derived.touch(id.index);
 }
 
 template <Scalar S>
 void Objects<S>::erase(Context& world, BodyId id) {
   world.state.bodies.erase(id);
   world.derived.poses[id.index] = {};
+  world.derived.activeKnown = false;
 }
 
 template <Scalar S>
@@ -55,6 +60,7 @@ void Objects<S>::eraseWithShapes(Context& world, BodyId id) {
     i = std::exchange(derived.nextShape[i], kNone);
   }
   derived.firstShape[id.index] = derived.lastShape[id.index] = kNone;
+  derived.compoundKnown = false;
   erase(world, id);
   change.done();
 }
@@ -79,7 +85,9 @@ void Objects<S>::setType(Context& world, BodyId id, BodyType type) {
   }
 
   BodyAccess<S>::attach(changed, kept.id(), world.state.settings.worldExtent);
+  BodyAccess<S>::takePlaceOf(changed, kept);
   kept = changed;
+  world.derived.forgetWhoMoves();
 }
 
 template <Scalar S>
@@ -206,6 +214,21 @@ void Objects<S>::insert(Context& world, const Shape<S>& shape, ShapeId id) {
   // The next step or query places all shapes of the body.
   derived.poses[bodyId.index].known = false;
   derived.touch(bodyId.index);
+  Change change(world.leftMidway);
+  rouseNear(world, id);
+  change.done();
+}
+
+/// Wakes the body of a shape that came to be, or those that lie where it is and so may be touched by it.
+template <Scalar S>
+void Objects<S>::rouseNear(Context& world, ShapeId id) {
+  const std::uint32_t body = world.state.shapes.valueAt(id.index).body().index;
+  if (world.state.settings.sleepTimeThreshold == S(0)) return;
+  if (world.state.bodies.valueAt(body).type() == BodyType::staticBody) {
+    Rouse<S>::near(world.state, world.derived, id.index);
+  } else {
+    Rouse<S>::body(world.state, world.derived, body);
+  }
 }
 
 template <Scalar S>
@@ -222,6 +245,7 @@ void Objects<S>::erase(Context& world, ShapeId id) {
   derived.shapesHashKnown = false;
   world.state.shapes.erase(id);
   derived.touch(bodyId.index);
+  Rouse<S>::sleeper(world.state, derived, bodyId.index);
   change.done();
 }
 
@@ -257,6 +281,7 @@ void Objects<S>::replace(Context& world, ShapeId id, const Shape<S>& shape, bool
 
   world.derived.shapesHashKnown = false;
   world.derived.surfacesKnown = false;
+  const bool matters = !sameGeometry || !sameMass || !collidesAlike(kept, next);
   kept = std::move(next);
   world.derived.takeTraits(id.index, kept);
   if (!sameGeometry) {
@@ -264,6 +289,19 @@ void Objects<S>::replace(Context& world, ShapeId id, const Shape<S>& shape, bool
     world.derived.prepareShape(id.index, kept);
     world.derived.poses[kept.body().index].known = false;
   }
+  if (!matters) return;
+  Change change(world.leftMidway);
+  Rouse<S>::pairsOf(world.state, world.derived, id);
+  rouseNear(world, id);
+  change.done();
+}
+
+/// Whether two shapes of one geometry do the same where they touch something.
+template <Scalar S>
+bool Objects<S>::collidesAlike(const Shape<S>& a, const Shape<S>& b) {
+  return a.friction() == b.friction() && a.elasticity() == b.elasticity() &&
+         a.surfaceVelocity() == b.surfaceVelocity() && a.sensor() == b.sensor() && a.filter() == b.filter() &&
+         a.collisionType() == b.collisionType();
 }
 
 /// The next step collides anew what touches a shape.
@@ -272,6 +310,9 @@ template <Scalar S>
 void Objects<S>::forgetManifolds(Context& world, ShapeId id, std::span<const std::uint32_t> touching) {
   for (const std::uint32_t index : touching) {
     Pair<S>& pair = world.state.pairs[index];
+    if (pair.a == id || pair.b == id) pair.manifold = Manifold::unknown;
+  }
+  for (Pair<S>& pair : world.state.restingPairs) {
     if (pair.a == id || pair.b == id) pair.manifold = Manifold::unknown;
   }
 }

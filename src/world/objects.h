@@ -37,6 +37,8 @@ struct Objects {
                                         const Shape<S>* by);
   static bool anyShapeWeighs(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by);
   static void takeMass(Context& world, BodyId id, std::uint32_t replaced, const Shape<S>* by);
+  static void rouseNear(Context& world, ShapeId id);
+  static bool collidesAlike(const Shape<S>& a, const Shape<S>& b);
   static void forgetManifolds(Context& world, ShapeId id, std::span<const std::uint32_t> touching);
 };
 

@@ -8,6 +8,7 @@
 #include "base/change.h"
 #include "base/require_ieee.h"
 #include "contacts/stages/contact_callbacks.h"
+#include "islands/rouse.h"
 #include "world/objects.h"
 #include "world/queries.h"
 #include "world/space_parts.h"
@@ -29,6 +30,31 @@ std::uint32_t nextSerial() {
 constexpr const char* kReindexLocked =
     "You cannot manually reindex objects while the space is locked. Wait until the current query or step is "
     "complete.";
+
+/// Some pairs of a list, by rising places, and what is done with each.
+template <Scalar S, class Visit>
+struct PairsToVisit {
+  std::vector<Pair<S>>& pairs;
+  std::span<const std::uint32_t> places;
+  bool all;  ///< Of the list, whatever the places are.
+  Visit visit;
+
+  std::size_t count() const { return all ? pairs.size() : places.size(); }
+  Pair<S>& at(std::size_t i) const { return pairs[all ? i : places[i]]; }
+};
+
+/// Visits those of two lists by rising ids.
+template <class A, class B>
+void visitBoth(const A& a, const B& b) {
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < a.count(); ++i) {
+    for (; next < b.count() && std::decay_t<decltype(b.at(0))>::before(b.at(next), a.at(i)); ++next) {
+      b.visit(b.at(next));
+    }
+    a.visit(a.at(i));
+  }
+  for (; next < b.count(); ++next) b.visit(b.at(next));
+}
 
 void requireNotMain(BodyId id, BodyId staticBody, const char* asked) {
   require<Fault::MainStaticBody>(id != staticBody, asked, ": body ", id,
@@ -258,16 +284,22 @@ void Space<S>::visitArbiters(const BodyId* of, void (*visit)(Arbiter<S>&, void*)
     Arbiter<S> arbiter = ContactCallbacks<S>::arbiterOf(world, pair);
     visit(arbiter, data);
   };
-  if (of == nullptr) {
-    LockGuard guard(*this);
-    for (Pair<S>& pair : state_.pairs) visitPair(pair);
-    guard.finish();
-  } else {
-    const std::span<const std::uint32_t> pairs = parts_->derived.pairsOf(state_, *of);
-    LockGuard guard(*this);
-    for (const std::uint32_t index : pairs) visitPair(state_.pairs[index]);
-    guard.finish();
+  const auto visitResting = [&](Pair<S>& pair) {
+    const ArbiterState before = pair.state;
+    visitPair(pair);
+    // What is ignored holds nothing.
+    if (pair.state != before) Rouse<S>::ends(state_, parts_->derived, pair);
+  };
+  const bool all = of == nullptr;
+  std::span<const std::uint32_t> awake, resting;
+  if (!all) {
+    awake = parts_->derived.pairsOf(state_, *of);
+    resting = parts_->derived.restingPairsOf(state_, *of);
   }
+  LockGuard guard(*this);
+  visitBoth(PairsToVisit<S, decltype(visitPair)>{state_.pairs, awake, all, visitPair},
+            PairsToVisit<S, decltype(visitResting)>{state_.restingPairs, resting, all, visitResting});
+  guard.finish();
 }
 
 template <Scalar S>

@@ -6,6 +6,7 @@
 
 #include "base/require_ieee.h"
 #include "dynamics/body_access.h"
+#include "islands/rouse.h"
 #include "world/space_parts.h"
 
 namespace samestep {
@@ -45,6 +46,8 @@ void check(const Settings<S>& s) {
   requireIn("contact push speed is ", s.contactPushSpeed, S(0), S(1 << 10), " m/s");
   requireIn("contact margin is ", s.contactMargin, S(0), S(1), " m");
   requireIn("bounce threshold is ", s.bounceThreshold, S(0), S(1 << 10), " m/s");
+  requireIn("sleep time threshold is ", s.sleepTimeThreshold, S(0), kMaxRestTime<S>, " s");
+  requireIn("idle speed threshold is ", s.idleSpeedThreshold, S(0), kMaxSpeed<S>, " m/s");
   require<Fault::ValueOutOfRange>(s.worldExtent > S(0) && s.worldExtent <= kMaxWorldExtent<S>,
                                   "settings of a Space: world extent is ", s.worldExtent,
                                   " m, allowed are above 0 to ", kMaxWorldExtent<S>, " m");
@@ -65,6 +68,7 @@ void Space<S>::setSettings(const Settings<S>& settings) {
   const bool otherSolver = settings.solver != state_.settings.solver;
   const bool otherExtent = settings.worldExtent != state_.settings.worldExtent;
   const bool otherContacts = otherSolver || settings.contactMargin != state_.settings.contactMargin;
+  if (!(settings == state_.settings)) Rouse<S>::all(state_, parts_->derived);
   state_.settings = settings;
   if (otherExtent) {
     state_.bodies.each(
@@ -75,6 +79,7 @@ void Space<S>::setSettings(const Settings<S>& settings) {
   if (otherSolver) state_.bodies.each([](BodyId, Body<S>& body) { BodyAccess<S>::forgetBias(body); });
   if (!otherContacts) return;
   for (Pair<S>& pair : state_.pairs) pair.manifold = Manifold::unknown;
+  for (Pair<S>& pair : state_.restingPairs) pair.manifold = Manifold::unknown;
 }
 
 template <Scalar S>
@@ -148,6 +153,16 @@ void Space<S>::setContactMargin(S margin) {
 template <Scalar S>
 void Space<S>::setBounceThreshold(S speed) {
   setSettings(with(state_.settings, &Settings<S>::bounceThreshold, speed));
+}
+
+template <Scalar S>
+void Space<S>::setSleepTimeThreshold(S seconds) {
+  setSettings(with(state_.settings, &Settings<S>::sleepTimeThreshold, seconds));
+}
+
+template <Scalar S>
+void Space<S>::setIdleSpeedThreshold(S speed) {
+  setSettings(with(state_.settings, &Settings<S>::idleSpeedThreshold, speed));
 }
 
 }  // namespace samestep

@@ -58,6 +58,10 @@ class StageExpectations {
       if (pair.solved == 0) continue;
       expects(pair.count > 0 && pair.state != ArbiterState::ignored);
       expects(bodyOf(step, pair.a).isDynamic() || bodyOf(step, pair.b).isDynamic());
+      // What sleeps and is touched was woken.
+      for (const ShapeId shape : {ShapeId(pair.a), ShapeId(pair.b)}) {
+        expects(step.derived.sleeps[bodyOf(step, shape).id().index] == 0);
+      }
       const S unit = lengthSq(pair.localNormal);
       expects(unit >= S(1) - slack && unit <= S(1) + slack);
     }

@@ -40,24 +40,24 @@ std::span<const typename Step<S>::Line> Step<S>::lines(SolverKind solver) {
   static constexpr Line kSequentialImpulses[] = {
       {Stage::integratePositions, [](Step&, C& step) { Integrate<S>::positions(step); }},
       {Stage::updateShapes, [](Step& stages, C& step) { stages.placeShapes.run(step); }},
-      {Stage::findPairs, [](Step& stages, C& step) { stages.findPairs.run(step); }},
+      {Stage::findPairs, [](Step& stages, C& step) { stages.meet(step); }},
       {Stage::collide, [](Step& of, C& step) { of.updateContacts.run(step, of.findPairs.overlapping()); }},
       {Stage::preStep, [](Step& stages, C& step) { stages.impulses.prepare(step); }},
       {Stage::integrateVelocities, [](Step&, C& step) { Integrate<S>::velocities(step); }},
       {Stage::solve, [](Step& stages, C& step) { stages.impulses.solve(step); }},
-      {Stage::callbacks, [](Step&, C& step) { tellResults(step); }},
+      {Stage::callbacks, [](Step& stages, C& step) { tellResults(step), stages.islands.fallAsleep(step); }},
   };
   static constexpr Line kSoftStep[] = {
       // It ends with all shapes placed: only those of bodies moved by hand since then were not, and are by
       // now.
-      {Stage::updateShapes, [](Step&, C& step) { step.derived.forgetTouched(); }},
-      {Stage::findPairs, [](Step& stages, C& step) { stages.findPairs.run(step); }},
+      {Stage::updateShapes, [](Step&, C& step) { step.derived.forgetTouched(step.state); }},
+      {Stage::findPairs, [](Step& stages, C& step) { stages.meet(step); }},
       {Stage::collide, [](Step& of, C& step) { of.updateContacts.run(step, of.findPairs.overlapping()); }},
       {Stage::preStep, [](Step& stages, C& step) { stages.soft.prepare(step); }},
       {Stage::solve, [](Step& stages, C& step) { stages.soft.solve(step), UpdateContacts<S>::settle(step); }},
       {Stage::integratePositions, [](Step& stages, C& step) { stages.soft.finish(step); }},
       {Stage::updateShapes, [](Step& stages, C& step) { stages.placeShapes.run(step); }},
-      {Stage::callbacks, [](Step&, C& step) { tellResults(step); }},
+      {Stage::callbacks, [](Step& stages, C& step) { tellResults(step), stages.islands.fallAsleep(step); }},
   };
   if (solver == SolverKind::softStep) return kSoftStep;
   return kSequentialImpulses;
@@ -66,8 +66,15 @@ std::span<const typename Step<S>::Line> Step<S>::lines(SolverKind solver) {
 template <Scalar S>
 void Step<S>::tellResults(StepContext<S>& step) {
   ContactCallbacks<S>::postSolve(step);
-  step.events.listRange(step.state);
+  step.events.listRange(step.state, step.derived.active);
   ListContacts<S>::finish(step);
+}
+
+/// Finds who is near whom, and wakes who sleeps and is touched.
+template <Scalar S>
+void Step<S>::meet(StepContext<S>& step) {
+  findPairs.run(step);
+  if (!step.refused) islands.wakeTouched(step, findPairs);
 }
 
 template <Scalar S>
@@ -87,6 +94,8 @@ bool Step<S>::run(StepContext<S>& step) {
   ++step.state.stamp;
   step.events.begin(step.state);
   step.derived.completePairs(step.state);
+  keepBefore(step);
+  islands.wakeRoused(step);
   ListContacts<S>::begin(step);
   // Position functions ask about the world before any of them moved a body; the soft step begins with it:
   // nothing but what was moved by hand has to be placed.
@@ -99,13 +108,10 @@ bool Step<S>::run(StepContext<S>& step) {
 
 template <Scalar S>
 bool Step<S>::runLines(StepContext<S>& step) {
-  const bool movesFirst = !step.isSoft();
-  if (movesFirst && FindPairs<S>::mayFindTooMany(step)) bodiesBefore_ = step.state.bodies;
   for (const Line& line : lines(step.state.settings.solver)) {
     step.pay(Budget::kPerObject * (std::uint64_t{step.state.bodies.slots()} + step.state.shapes.slots()));
     line.run(*this, step);
     if (step.refused) {
-      if (movesFirst) step.state.bodies = bodiesBefore_;
       takeBack(step);
       return false;
     }
@@ -116,11 +122,29 @@ bool Step<S>::runLines(StepContext<S>& step) {
   return true;
 }
 
+/// Keeps what takeBack needs.
+template <Scalar S>
+void Step<S>::keepBefore(const StepContext<S>& step) {
+  const bool mayEnd = FindPairs<S>::mayFindTooMany(step);
+  keptPairs_ = mayEnd && Islands<S>::anyRoused(step);
+  keptBodies_ = keptPairs_ || (mayEnd && !step.isSoft());
+  if (keptBodies_) bodiesBefore_ = step.state.bodies;
+  if (!keptPairs_) return;
+  pairsBefore_ = step.state.pairs;
+  restingBefore_ = step.state.restingPairs;
+}
+
 /// Leaves the world as if a step that found too many pairs had not begun, with all bodies where they were.
 template <Scalar S>
 void Step<S>::takeBack(StepContext<S>& step) {
   step.state.timeStep = step.dtBefore;
   --step.state.stamp;
+  if (keptBodies_) step.state.bodies = bodiesBefore_;
+  if (keptPairs_) {
+    step.state.pairs = pairsBefore_;
+    step.state.restingPairs = restingBefore_;
+    step.derived.forget();
+  }
   step.derived.touchAll(step.state);
 }
 

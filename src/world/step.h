@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <samestep/slot_map.h>
 
@@ -9,6 +10,7 @@
 #include "broad_phase/stages/place_shapes.h"
 #include "contacts/stages/update_contacts.h"
 #include "context/step_context.h"
+#include "islands/stages/islands.h"
 #include "solver/sequential_impulse/stages/impulse_stages.h"
 #include "solver/soft_step/stages/soft_stages.h"
 
@@ -34,6 +36,7 @@ struct Step {
 
   PlaceShapes<S> placeShapes;
   FindPairs<S> findPairs;
+  Islands<S> islands;
   UpdateContacts<S> updateContacts;
   ImpulseStages<S> impulses;
   SoftStages<S> soft;
@@ -52,10 +55,15 @@ struct Step {
   };
 
   static void tellResults(StepContext<S>& step);
+  void meet(StepContext<S>& step);
   [[nodiscard]] bool runLines(StepContext<S>& step);
-  static void takeBack(StepContext<S>& step);
+  void keepBefore(const StepContext<S>& step);
+  void takeBack(StepContext<S>& step);
 
-  SlotMap<Body<S>, BodyId> bodiesBefore_;  // The bodies before a step that may be refused after they moved.
+  // The world before a step that may be refused after bodies moved or woke.
+  bool keptBodies_ = false, keptPairs_ = false;
+  SlotMap<Body<S>, BodyId> bodiesBefore_;
+  std::vector<Pair<S>> pairsBefore_, restingBefore_;
 };
 
 #define SAMESTEP_EACH_SCALAR extern template struct Step<S>;

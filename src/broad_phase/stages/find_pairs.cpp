@@ -119,7 +119,7 @@ void FindPairs<S>::run(StepContext<S>& step) {
   if (step.refused) return;
   step.pay(Budget::kPerCandidate * (step.derived.dynamicTree.pairs().size() + before));
   const std::uint32_t count = mergePairs(step);
-  step.refused = count > step.wiring.maxPairs;
+  step.refused = count + step.state.restingPairs.size() > step.wiring.maxPairs;
   if (step.refused) return;
   if (count != before || pairRuns_.size() > 1 || !newPairs_.empty()) step.derived.bodyPairs.known = false;
   movePairs(step.state, count);
@@ -152,6 +152,38 @@ void FindPairs<S>::movePairs(WorldState<S>& state, std::uint32_t count) {
   pairs.resize(count);
   // So many new pairs come when a world is built, and seldom again.
   if (newPairs_.size() > 4096 && newPairs_.size() == count) newPairs_ = {};
+}
+
+template <Scalar S>
+void FindPairs<S>::mergeInto(std::vector<Pair<S>>& pairs, const std::vector<Pair<S>>& more) {
+  std::size_t old = pairs.size(), fresh = more.size();
+  pairs.resize(old + fresh);
+  for (std::size_t to = pairs.size(); fresh > 0; --to) {
+    const bool isOld = old > 0 && Pair<S>::before(more[fresh - 1], pairs[old - 1]);
+    pairs[to - 1] = isOld ? pairs[--old] : more[--fresh];
+  }
+}
+
+template <Scalar S>
+void FindPairs<S>::addRested(StepContext<S>& step, const std::vector<Pair<S>>& more) {
+  const S margin = step.pairMargin();
+  const Derived<S>& derived = step.derived;
+  std::vector<Pair<S>>& pairs = step.state.pairs;
+  std::size_t old = pairs.size(), fresh = more.size();
+  mergeInto(pairs, more);
+  overlapping_.resize(pairs.size());
+  for (std::size_t to = pairs.size(); fresh > 0; --to) {
+    const Pair<S>& pair = pairs[to - 1];
+    if (!Pair<S>::before(pair, more[fresh - 1]) && !Pair<S>::before(more[fresh - 1], pair)) {
+      --fresh;
+      const std::uint32_t a = pair.a.index, b = pair.b.index;
+      const bool near = nearBoxes(derived.placed[a].box, margin, derived.placed[b].box);
+      overlapping_[to - 1] = near && mayCollide(derived.traits[a], derived.traits[b]) ? 1 : 0;
+    } else {
+      overlapping_[to - 1] = overlapping_[--old];
+    }
+  }
+  step.derived.bodyPairs.known = false;
 }
 
 #define SAMESTEP_EACH_SCALAR template class FindPairs<S>;

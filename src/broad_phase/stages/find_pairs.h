@@ -19,6 +19,10 @@ class FindPairs {
   void run(StepContext<S>& step);
   /// Overlap of the boxes of each pair, after run.
   const std::vector<std::uint8_t>& overlapping() const { return overlapping_; }
+  /// Puts pairs, in order, into a list where there are none of them.
+  static void mergeInto(std::vector<Pair<S>>& pairs, const std::vector<Pair<S>>& more);
+  /// After run: adds pairs that rested until now.
+  void addRested(StepContext<S>& step, const std::vector<Pair<S>>& more);
   /// True if so many shapes can be more pairs than are allowed.
   static bool mayFindTooMany(const StepContext<S>& step) {
     const std::uint64_t shapes = step.state.shapes.size();

@@ -17,7 +17,7 @@ class PlaceShapes {
  private:
   void placeTogether(StepContext<S>& step);
 
-  // Each entry says of a body slot whether its boxes have to follow.
+  // Each entry says of a body that moves whether its boxes have to follow.
   std::vector<std::uint8_t> placedAnew_;
 };
 

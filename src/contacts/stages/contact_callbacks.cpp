@@ -6,6 +6,7 @@
 
 #include "base/require_ieee.h"
 #include "contacts/stages/list_contacts.h"
+#include "islands/rouse.h"
 
 namespace samestep {
 
@@ -173,35 +174,60 @@ void ContactCallbacks<S>::postSolve(Context& context) {
   }
 }
 
-template <Scalar S>
-void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape) {
-  auto& pairs = context.state.pairs;
-  const auto meant = [&](const Pair<S>& pair) {
-    return !shape.valid() || pair.a == shape || pair.b == shape;
-  };
-  context.derived.completePairs(context.state);
-  const std::span<const std::uint32_t> ofBody = context.derived.pairsOf(context.state, body);
-  context.pay(Budget::kPerCandidate * (context.state.pairs.size() + ofBody.size()));
-  std::uint32_t called = 0;
-  for (const std::uint32_t index : ofBody) {
-    Pair<S>& pair = pairs[index];
-    if (!meant(pair) || !hasBegun(pair)) continue;
-    payForCall(context, called);
-    pair.state = ArbiterState::cached;
-    ListContacts<S>::endBetween(context, pair);
-    separate(context, pair, true);
-  }
+namespace {
+
+/// Takes the pairs of some places, which rise, out of a list for which `meant` is true.
+template <Scalar S, class IsMeant>
+bool erasePairs(std::vector<Pair<S>>& pairs, std::span<const std::uint32_t> places, IsMeant&& meant) {
   // Pairs between two shapes that go move down together, each once.
   auto to = pairs.end(), from = pairs.begin();
-  for (const std::uint32_t index : ofBody) {
+  for (const std::uint32_t index : places) {
     const auto gone = pairs.begin() + static_cast<std::ptrdiff_t>(index);
     if (!meant(*gone)) continue;
     to = to == pairs.end() ? gone : std::copy(from, gone, to);
     from = gone + 1;
   }
-  if (to == pairs.end()) return;
+  if (to == pairs.end()) return false;
   pairs.erase(std::copy(from, pairs.end(), to), pairs.end());
-  context.derived.bodyPairs.known = false;
+  return true;
+}
+
+}  // namespace
+
+template <Scalar S>
+void ContactCallbacks<S>::dropPairs(Context& context, BodyId body, ShapeId shape) {
+  WorldState<S>& world = context.state;
+  const auto meant = [&](const Pair<S>& pair) {
+    return !shape.valid() || pair.a == shape || pair.b == shape;
+  };
+  context.derived.completePairs(world);
+  const std::span<const std::uint32_t> ofBody = context.derived.pairsOf(world, body);
+  const std::span<const std::uint32_t> resting = context.derived.restingPairsOf(world, body);
+  context.pay(Budget::kPerCandidate * (world.pairs.size() + ofBody.size() + resting.size()));
+  std::uint32_t called = 0;
+  const auto end = [&](Pair<S>& pair) {
+    if (!meant(pair) || !hasBegun(pair)) return;
+    payForCall(context, called);
+    pair.state = ArbiterState::cached;
+    ListContacts<S>::endBetween(context, pair);
+    separate(context, pair, true);
+  };
+  // Both lists rise by ids.
+  auto next = resting.begin();
+  for (const std::uint32_t index : ofBody) {
+    Pair<S>& pair = world.pairs[index];
+    while (next != resting.end() && Pair<S>::before(world.restingPairs[*next], pair)) {
+      end(world.restingPairs[*next++]);
+    }
+    end(pair);
+  }
+  while (next != resting.end()) end(world.restingPairs[*next++]);
+
+  for (const std::uint32_t index : resting) {
+    if (meant(world.restingPairs[index])) Rouse<S>::ends(world, context.derived, world.restingPairs[index]);
+  }
+  if (erasePairs(world.pairs, ofBody, meant)) context.derived.bodyPairs.known = false;
+  if (erasePairs(world.restingPairs, resting, meant)) context.derived.restingPairs.known = false;
 }
 
 #define SAMESTEP_EACH_SCALAR template struct ContactCallbacks<S>;

@@ -50,6 +50,19 @@ void ListContacts<S>::begin(Context& context) {
 }
 
 template <Scalar S>
+void ListContacts<S>::addBegun(Context& context, const std::vector<Pair<S>>& pairs) {
+  using Touching = typename ContactLists<S>::Touching;
+  if (!context.wiring.listing.contacts) return;
+  std::vector<Touching>& touching = context.events.contacts.touching;
+  for (const Pair<S>& pair : pairs) {
+    if (ContactCallbacks<S>::hasBegun(pair)) touching.push_back({pair.a, pair.b});
+  }
+  // total order: a pair is in one list only
+  std::sort(touching.begin(), touching.end(),
+            [](const Touching& a, const Touching& b) { return sortKey(a.a, a.b) < sortKey(b.a, b.b); });
+}
+
+template <Scalar S>
 void ListContacts<S>::finish(Context& context) {
   const EventListing<S>& listing = context.wiring.listing;
   ContactLists<S>& lists = context.events.contacts;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <vector>
+
 #include "context/step_context.h"
 
 namespace samestep {
@@ -13,6 +15,8 @@ struct ListContacts {
 
   /// Notes what the step begins with.
   static void begin(Context& context);
+  /// Of pairs that rested as the step began, and do so no longer: notes those that touched.
+  static void addBegun(Context& context, const std::vector<Pair<S>>& pairs);
   /// Makes the lists.
   static void finish(Context& context);
   /// Notes the end of a contact between steps.

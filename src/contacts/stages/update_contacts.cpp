@@ -31,7 +31,7 @@ void UpdateContacts<S>::collidePairs(StepContext<S>& step, const std::uint8_t* o
   step.derived.surfacesKnown = false;
   someLeft_ = false;
   found_.resize(count);
-  someCompound_ = step.derived.hasCompound();
+  someCompound_ = step.derived.hasCompound(step.state);
   const bool handled = !step.state.handlers.empty();
   if (!step.team.helpsWith(count, StepContext<S>::kFewPairs)) {
     const std::uint32_t grain = Budget::kPairsAtOnce;
@@ -178,6 +178,14 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
   }
   return static_cast<std::uint8_t>(ContactFound::kNear | (same ? 0 : ContactFound::kFresh) |
                                    (seam ? ContactFound::kSeam : 0));
+}
+
+template <Scalar S>
+bool UpdateContacts<S>::wouldTouch(const StepContext<S>& step, const Pair<S>& pair) {
+  Pair<S> tried = pair;
+  CollisionStats stats;
+  const Deciding deciding{false, true, false};
+  return (collidePair(step, tried, deciding, stats) & ContactFound::kNear) != 0;
 }
 
 /// Tells whether a contact is one in this step, and of shapes that touch now: see meets.

@@ -9,13 +9,20 @@ namespace samestep {
 template <Scalar S>
 void Integrate<S>::check(const StepContext<S>& step) {
   const auto& bodies = step.state.bodies;
-  for (std::uint32_t i = 0; i < bodies.slots(); ++i) {
-    if (!bodies.aliveAt(i)) continue;
-    const Body<S>& body = bodies.valueAt(i);
+  const auto checkOne = [&](const Body<S>& body) {
     const char* reason = BodyAccess<S>::cannotStep(body);
     require<Fault::IllegalBody>(reason == nullptr, "Space::step: body ", body.id(), ": its ", reason);
     if (body.positionFunc() != 0 || body.velocityFunc() != 0) [[unlikely]]
       step.wiring.requireCallbacks(body);
+  };
+  // Of those that nobody has changed since they fell asleep, all was well then.
+  if (step.derived.cached && step.derived.activeKnown) {
+    for (const std::uint32_t i : step.derived.active) checkOne(bodies.valueAt(i));
+    for (const std::uint32_t i : step.derived.touched) {
+      if (bodies.aliveAt(i)) checkOne(bodies.valueAt(i));
+    }
+  } else {
+    bodies.each([&](BodyId, const Body<S>& body) { checkOne(body); });
   }
 }
 
@@ -44,10 +51,8 @@ void Integrate<S>::callVelocityFunc(StepContext<S>& step, std::uint32_t index, S
 template <Scalar S>
 void Integrate<S>::positions(StepContext<S>& step) {
   auto& bodies = step.state.bodies;
-  for (std::uint32_t i = 0; i < bodies.slots(); ++i) {
-    if (!bodies.aliveAt(i)) continue;
+  for (const std::uint32_t i : step.derived.active) {
     Body<S>& body = bodies.valueAt(i);
-    if (body.type() == BodyType::staticBody) continue;
     if (body.positionFunc() != 0) [[unlikely]] {
       callPositionFunc(step, i);
     } else {
@@ -62,12 +67,9 @@ void Integrate<S>::velocities(StepContext<S>& step) {
   const S kept = damping == S(1) ? S(1) : pow(damping, step.dt);
   const Vector<S> pull = step.state.settings.gravity;
   auto& bodies = step.state.bodies;
-  for (std::uint32_t i = 0; i < bodies.slots(); ++i) {
-    if (!bodies.aliveAt(i)) continue;
+  for (const std::uint32_t i : step.derived.active) {
     Body<S>& body = bodies.valueAt(i);
-    if (body.type() == BodyType::staticBody) {
-      // Nothing moves it, and no function is asked to.
-    } else if (body.velocityFunc() != 0) [[unlikely]] {
+    if (body.velocityFunc() != 0) [[unlikely]] {
       callVelocityFunc(step, i, kept);
     } else if (body.isDynamic()) {
       step.events.held[i] |=

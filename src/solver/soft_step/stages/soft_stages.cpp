@@ -54,6 +54,7 @@ void SoftStages<S>::findGroups(const StepContext<S>& step) {
   const std::vector<Pair<S>>& pairs = step.state.pairs;
   groups_.clear(step.state.bodies.slots());
   solvedPairs_.clear();
+  unmoved_.clear();
   solverIndex_.assign(step.state.bodies.slots(), kNone);
   soft_.mostKept = S(0);
   const bool fast = FixedNumber<S> && step.state.settings.precision == ContactPrecision::fast;
@@ -62,15 +63,20 @@ void SoftStages<S>::findGroups(const StepContext<S>& step) {
     if (pair.solved == 0) continue;
     const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
     const std::uint32_t a = shapeA.body, b = shapeB.body;
-    solverIndex_[a] = solverIndex_[b] = 0;
     solvedPairs_.push_back({i, a, b, shapeA.round, shapeB.round});
     for (int k = 0; fast && k < pair.count; ++k) {
       soft_.mostKept =
           max(soft_.mostKept, max(pair.contacts[k].normalSpeed, abs(pair.contacts[k].tangentSpeed)));
     }
     // The type a body was placed with is the body's own, and nearer in memory.
-    const auto moves = [&](std::uint32_t body) { return derived.poses[body].type == BodyType::dynamicBody; };
-    groups_.add(a, moves(a), b, moves(b), pair.count == 1);
+    const auto moves = [&](std::uint32_t body) {
+      const bool does = derived.poses[body].type == BodyType::dynamicBody;
+      if (!does && solverIndex_[body] == kNone) unmoved_.push_back(body);
+      solverIndex_[body] = 0;
+      return does;
+    };
+    const bool movesA = moves(a), movesB = moves(b);
+    groups_.add(a, movesA, b, movesB, pair.count == 1);
   }
   groups_.sort(groupOrder_);
 }
@@ -92,14 +98,12 @@ void SoftStages<S>::takeBodies(StepContext<S>& step) {
   const S keptInStep = damping == S(1) ? S(1) : pow(damping, step.dt);
   soft_.clear();
   soft_.frames.resize(bodies.slots());
-  for (std::uint32_t i = 0; i < bodies.slots(); ++i) {
-    if (!bodies.aliveAt(i)) continue;
+  takeStill(step);
+  for (const std::uint32_t i : step.derived.active) {
     Body<S>& body = bodies.valueAt(i);
     SoftStart<S> start;
     S pull[3]{};
-    if (body.type() == BodyType::staticBody) {
-      // Nothing moves it, and no function is asked to.
-    } else if (body.velocityFunc() != 0) [[unlikely]] {
+    if (body.velocityFunc() != 0) [[unlikely]] {
       Integrate<S>::callVelocityFunc(step, i, keptInStep);
     } else if (body.isDynamic()) {
       const auto motion = BodyAccess<S>::acceleration(body, step.state.settings.gravity);
@@ -114,6 +118,16 @@ void SoftStages<S>::takeBodies(StepContext<S>& step) {
   }
 }
 
+/// What contacts meet and nothing moves in this step.
+template <Scalar S>
+void SoftStages<S>::takeStill(const StepContext<S>& step) {
+  for (const std::uint32_t slot : unmoved_) {
+    const Body<S>& body = step.state.bodies.valueAt(slot);
+    const bool still = body.type() == BodyType::staticBody || body.activity() != Activity::awake;
+    if (still) soft_.frames[slot] = frameOf(body, 0, kAnyRadiusBits);
+  }
+}
+
 /// @param start  says already what pushes it
 /// @param pull   its acceleration
 template <Scalar S>
@@ -121,10 +135,6 @@ void SoftStages<S>::takeBody(const StepContext<S>& step, std::uint32_t slot, Sof
                              const S (&pull)[3]) {
   const Body<S>& body = step.state.bodies.valueAt(slot);
   std::uint32_t& index = solverIndex_[slot];
-  if (body.type() == BodyType::staticBody) {
-    if (index != kNone) soft_.frames[slot] = frameOf(body, 0, kAnyRadiusBits);
-    return;
-  }
   start.velocity[0] = body.velocity().x;
   start.velocity[1] = body.velocity().y;
   start.velocity[2] = body.angularVelocity();
@@ -268,12 +278,12 @@ void SoftStages<S>::solve(StepContext<S>& step) {
 
 template <Scalar S>
 void SoftStages<S>::finish(StepContext<S>& step) {
-  const std::uint32_t slots = step.state.bodies.slots();
+  const auto count = static_cast<std::uint32_t>(step.derived.active.size());
   // Position functions are called in order, and see the bodies before them moved, those after them not.
   const bool together =
-      step.wiring.positionFuncs.empty() && step.team.helpsWith(slots, StepContext<S>::kFewBodies);
+      step.wiring.positionFuncs.empty() && step.team.helpsWith(count, StepContext<S>::kFewBodies);
   step.team.during(together, [&] {
-    step.team.each(slots, StepContext<S>::kBodyGrain,
+    step.team.each(count, StepContext<S>::kBodyGrain,
                    [&](std::uint32_t begin, std::uint32_t end) { finish(step, begin, end); });
   });
 }
@@ -283,10 +293,9 @@ void SoftStages<S>::finish(StepContext<S>& step, std::uint32_t begin, std::uint3
   auto& bodies = step.state.bodies;
   std::vector<std::uint8_t>& held = step.events.held;
   soft_.solvers.with([&](const auto& solver) {
-    for (std::uint32_t i = begin; i < end; ++i) {
-      if (!bodies.aliveAt(i)) continue;
+    for (std::uint32_t number = begin; number < end; ++number) {
+      const std::uint32_t i = step.derived.active[number];
       Body<S>& body = bodies.valueAt(i);
-      if (body.type() == BodyType::staticBody) continue;
       const std::uint32_t index = solverIndex_[i];
       const SoftMotion<S> motion = (index & kFree) != 0 ? soft_.free[index & ~kFree] : solver.motion(index);
       if (body.isDynamic()) {

@@ -33,6 +33,7 @@ class SoftStages {
   };
 
   void findGroups(const StepContext<S>& step);
+  void takeStill(const StepContext<S>& step);
   void takeBodies(StepContext<S>& step);
   void takeBody(const StepContext<S>& step, std::uint32_t slot, SoftStart<S>& start, const S (&pull)[3]);
   SoftFrame<S> frameOf(const Body<S>& body, std::uint32_t index, int radiusBits) const;
@@ -46,6 +47,8 @@ class SoftStages {
   SoftStep<S> soft_;
   ContactGroups groups_;
   std::vector<SolvedPair> solvedPairs_;
+  // Those of them that contacts do not move, each once.
+  std::vector<std::uint32_t> unmoved_;
   // Numbers of solvedPairs_, group after group.
   std::vector<std::uint32_t> groupOrder_;
   // Each body slot has an entry.
