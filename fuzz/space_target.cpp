@@ -297,7 +297,13 @@ class World {
   void moveBody(std::uint64_t op) {
     const BodyId id = someBody(op);
     Body<S>& body = space_.body(id);
-    switch (byteOf(op, 2) % 8) {
+    switch (byteOf(op, 2) % 11) {
+      case 8:
+        return body.setMaySleep(byteOf(op, 3) % 4 != 0);
+      case 9:
+        return body.activate();
+      case 10:
+        return body.sleep();
       case 0:
         return body.setPosition(vector(byteOf(op, 3) == 255 ? Fixed(1 << 16) : Fixed(6)));
       case 1:
@@ -349,7 +355,7 @@ class World {
   }
 
   void changeSettings(std::uint64_t op) {
-    switch (byteOf(op, 1) % 13) {
+    switch (byteOf(op, 1) % 15) {
       case 0:
         return space_.setGravity(vector(byteOf(op, 2) == 255 ? Fixed(1 << 15) : Fixed(20)));
       case 1:
@@ -374,6 +380,11 @@ class World {
         return space_.setContactPushSpeed(number(Fixed(-1), Fixed(1025)));
       case 10:
         return space_.setContactMargin(number(Fixed(-1), Fixed(2)));
+      case 13:
+        // Short, for sequences are.
+        return space_.setSleepTimeThreshold(number(Fixed(-1), Fixed(1)) * ratio<S>(1, 4));
+      case 14:
+        return space_.setIdleSpeedThreshold(number(Fixed(-1), Fixed(2)));
       case 12:
         // continueTwice gives the same limit to the world that it restores.
         return space_.setMaxPairs(byteOf(op, 2) % 8 == 0 ? byteOf(op, 3) % 32 : kDefaultMaxPairs);
@@ -519,6 +530,10 @@ class World {
     for (std::size_t i = 1; i < pairs.size(); ++i) {
       expect(std::pair(pairs[i - 1].a, pairs[i - 1].b) < std::pair(pairs[i].a, pairs[i].b),
              "pairs are sorted");
+    }
+    for (const Pair<S>& pair : space_.state().restingPairs) {
+      expect(space_.state().shapes.contains(pair.a) && space_.state().shapes.contains(pair.b),
+             "pairs that rest are of shapes that are there");
     }
   }
 

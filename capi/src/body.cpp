@@ -34,6 +34,8 @@ samestep_body_state stateOf(const Body<S>& body) {
   state.rotates = body.rotates() ? 1 : 0;
   state.position_function = body.positionFunc();
   state.velocity_function = body.velocityFunc();
+  state.sleeps = body.isSleeping() ? 1 : 0;
+  state.may_sleep = body.maySleep() ? 1 : 0;
   return state;
 }
 
@@ -175,6 +177,18 @@ samestep_status samestep_body_set_angular_velocity(samestep_world* world, samest
 
 samestep_status samestep_body_set_force(samestep_world* world, samestep_body_id body, double x, double y) {
   return change(world, body, [&]<class S>(auto& of, S) { of.setForce(vector<S>(x, y)); });
+}
+
+samestep_status samestep_body_activate(samestep_world* world, samestep_body_id body) {
+  return change(world, body, []<class S>(auto& of, S) { of.activate(); });
+}
+
+samestep_status samestep_body_sleep(samestep_world* world, samestep_body_id body) {
+  return change(world, body, []<class S>(auto& of, S) { of.sleep(); });
+}
+
+samestep_status samestep_body_set_may_sleep(samestep_world* world, samestep_body_id body, int32_t may_sleep) {
+  return change(world, body, [&]<class S>(auto& of, S) { of.setMaySleep(may_sleep != 0); });
 }
 
 samestep_status samestep_body_set_torque(samestep_world* world, samestep_body_id body, double torque) {

@@ -85,6 +85,8 @@ Settings<S> toSettings(const samestep_settings& from) {
   settings.contactMargin = number<S>(from.contact_margin);
   settings.bounceThreshold = number<S>(from.bounce_threshold);
   settings.worldExtent = number<S>(from.world_extent);
+  settings.sleepTimeThreshold = number<S>(from.sleep_time_threshold);
+  settings.idleSpeedThreshold = number<S>(from.idle_speed_threshold);
   return settings;
 }
 
@@ -107,6 +109,8 @@ samestep_settings toC(const Settings<S>& from) {
   settings.contact_margin = toDouble(from.contactMargin);
   settings.bounce_threshold = toDouble(from.bounceThreshold);
   settings.world_extent = toDouble(from.worldExtent);
+  settings.sleep_time_threshold = toDouble(from.sleepTimeThreshold);
+  settings.idle_speed_threshold = toDouble(from.idleSpeedThreshold);
   return settings;
 }
 

@@ -67,7 +67,7 @@ RecordingLimits toLimits(const samestep_limits* from) {
   RecordingLimits limits;
   limits.bodies = from->bodies;
   limits.shapes = from->shapes;
-  limits.pairs = from->pairs;
+  limits.pairs = limits.restingPairs = from->pairs;
   limits.handlers = from->handlers;
   limits.iterations = from->iterations;
   limits.substeps = from->substeps;

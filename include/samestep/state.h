@@ -42,11 +42,12 @@ struct WorldLimits {
   std::uint32_t bodies = 1u << 16;
   std::uint32_t shapes = 1u << 16;
   std::uint32_t pairs = kDefaultMaxPairs;
-  std::uint32_t restingPairs = kDefaultMaxPairs;
   std::uint32_t handlers = 1u << 12;
   /// Passes over all contacts in a step, by either solver: at most those that a Space takes.
   std::uint32_t iterations = 1000;
   std::uint32_t substeps = 100;
+  /// Records of the section, again.
+  std::uint32_t restingPairs = kDefaultMaxPairs;
 };
 
 /// A section of a world: records of one kind, as many as there are.

@@ -127,7 +127,7 @@ void SceneBuilder<S>::readGrid(const Cursor& at, const Spawn<S>& body, const std
 template <Scalar S>
 Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
   at.allow({"name", "type", "mass", "moment", "rotates", "position", "angle", "velocity", "angularVelocity",
-            "userData", "shapes", "grid"});
+            "userData", "maySleep", "shapes", "grid"});
   Spawn<S> made;
   Body<S>& body = made.body;
   at.optional("rotates", [&](const Cursor& v) {
@@ -153,6 +153,7 @@ Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
   at.optional("velocity", [&](const Cursor& v) { body.setVelocity(v.template vector<S>()); });
   at.optional("angularVelocity", [&](const Cursor& v) { body.setAngularVelocity(v.template number<S>()); });
   at.optional("userData", [&](const Cursor& v) { body.setUserData(v.integer(0, ~std::uint64_t{0})); });
+  at.optional("maySleep", [&](const Cursor& v) { body.setMaySleep(v.boolean()); });
   if (at.has("shapes")) {
     const Cursor shapes = at.at("shapes");
     for (std::uint32_t i = 0; i < shapes.size(); ++i) made.shapes.push_back(readShape(shapes.item(i)));

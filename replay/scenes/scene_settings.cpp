@@ -10,7 +10,7 @@ template <Scalar S>
 void readSettings(Space<S>& space, const Cursor& at) {
   at.allow({"solver", "precision", "gravity", "iterations", "substeps", "damping", "collisionSlop",
             "collisionBias", "collisionPersistence", "contactHertz", "contactDamping", "contactPushSpeed",
-            "contactMargin", "bounceThreshold", "worldExtent"});
+            "contactMargin", "bounceThreshold", "worldExtent", "sleepTimeThreshold", "idleSpeedThreshold"});
   at.optional("solver", [&](const Cursor& v) {
     const std::string& solver = v.text();
     if (solver == "soft step") return space.setSolver(SolverKind::softStep);
@@ -45,6 +45,10 @@ void readSettings(Space<S>& space, const Cursor& at) {
     space.setCollisionPersistence(static_cast<std::uint32_t>(v.integer(0, 0xffffffffu)));
   });
   at.optional("worldExtent", [&](const Cursor& v) { space.setWorldExtent(v.template number<S>()); });
+  at.optional("sleepTimeThreshold",
+              [&](const Cursor& v) { space.setSleepTimeThreshold(v.template number<S>()); });
+  at.optional("idleSpeedThreshold",
+              [&](const Cursor& v) { space.setIdleSpeedThreshold(v.template number<S>()); });
 }
 
 std::uint32_t readStepsPerSecond(const Cursor& at) {

@@ -177,7 +177,8 @@ class Scene:
                 "collisionSlop": "collision_slop", "collisionBias": "collision_bias",
                 "collisionPersistence": "collision_persistence", "contactHertz": "contact_hertz",
                 "contactDamping": "contact_damping", "contactPushSpeed": "contact_push_speed",
-                "contactMargin": "contact_margin", "bounceThreshold": "bounce_threshold", "worldExtent": "world_extent"}
+                "contactMargin": "contact_margin", "bounceThreshold": "bounce_threshold", "worldExtent": "world_extent",
+                "sleepTimeThreshold": "sleep_time_threshold", "idleSpeedThreshold": "idle_speed_threshold"}
     COMMANDS = {"impulse": 0, "force": 1, "velocity": 2, "angularVelocity": 3, "position": 4, "angle": 5, "remove": 7}
 
     def __init__(self, library, scene, scalar):

@@ -327,6 +327,8 @@ TYPED_TEST(SnapshotTest, StatesThatNoSpaceCanHaveAreRefused) {
   expect("there is no static body", [](World& w) { w.staticBody.generation += 2; });
   expect("the time step is out of range", [](World& w) { w.timeStep = S(2); });
   expect("a setting is out of range", [](World& w) { w.settings.iterations = 0; });
+  expect("a setting is out of range", [](World& w) { w.settings.sleepTimeThreshold = S(-1); });
+  expect("a setting is out of range", [](World& w) { w.settings.idleSpeedThreshold = S(1 << 11); });
   expect("a shape is on a body that does not exist", [](World& w) {
     w.shapes.valueAt(0).setBody(BodyId{4000, 1});
   });

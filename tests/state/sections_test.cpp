@@ -28,6 +28,7 @@ class SectionsTest : public ::testing::Test {
     space_.addWildcardHandler(1, 1);
     space_.addCollisionHandler(1, 2, 1);
     for (int i = 0; i < 3; ++i) addDisc<S>(space_, {ratio<S>(3 * i, 2), S(0)}, S(1), S(1));
+    addResting(space_, {S(20), S(0)});
     space_.step(kTick<S>);
   }
   static std::vector<std::uint8_t> bytesOf(const WorldState<S>& world) {
@@ -75,7 +76,7 @@ TYPED_TEST(SectionsTest, EachSectionHasALimitOfItsOwn) {
     if constexpr (requires { section.limit; }) limits.*section.limit = ++sections;
   };
   WorldState<S>::sections(count, this->space_.state());
-  EXPECT_EQ(sections, 4u);
+  EXPECT_EQ(sections, 5u);
   std::uint32_t place = 0;
   const auto compare = [&](const auto& section, const auto&) {
     if constexpr (requires { section.limit; }) {
@@ -182,6 +183,11 @@ TYPED_TEST(SectionsTest, EachRecordIsChecked) {
             }),
             "a shape is on a body that does not exist");
   EXPECT_EQ(flawAfter([](auto& w) { w.pairs[0].count = kMaxContactsPerPair + 1; }), "a pair is malformed");
+  EXPECT_EQ(flawAfter([](auto& w) { w.restingPairs[0].count = kMaxContactsPerPair + 1; }), "a pair is malformed");
+  EXPECT_EQ(flawAfter([](auto& w) { w.pairs.push_back(w.restingPairs[0]); }),
+            "a pair rests among those that do not");
+  EXPECT_EQ(flawAfter([](auto& w) { w.restingPairs.insert(w.restingPairs.begin(), w.pairs[0]); }),
+            "a pair is there twice");
   EXPECT_EQ(flawAfter([](auto& w) { w.handlers[0].number = 0; }), "a handler is malformed");
 }
 

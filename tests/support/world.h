@@ -50,6 +50,17 @@ BodyId bodyOf(const Space<S>& space, ShapeId shape) {
   return space.shape(shape).body();
 }
 
+/// A kinematic disc in a static one, which are a resting pair after a step, in a world where things may sleep.
+template <Scalar S>
+void addResting(Space<S>& space, const Vector<S>& position) {
+  space.setSleepTimeThreshold(S(1));
+  for (const Body<S>& body : {Body<S>::kinematic(), Body<S>::fixedInPlace()}) {
+    const BodyId id = space.add(body);
+    space.add(circleShape(id, S(1)));
+    space.body(id).setPosition(position);
+  }
+}
+
 /// Half a dozen to a score of discs, boxes and segments falling into a box, some of them sensors, kinematic,
 /// compound or filtered: a little of everything. The same for each seed in every scalar.
 template <Scalar S>

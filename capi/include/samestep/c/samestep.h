@@ -201,17 +201,19 @@ typedef struct samestep_settings {
   int32_t iterations; /* Sequential impulses: 1 to 1000; 10 at first. */
   int32_t substeps;   /* Soft step: 1 to 100; 4 at first. */
   uint32_t
-      collision_persistence; /* Steps for which a contact that came apart keeps its impulses; 3 at first. */
-  samestep_vec2 gravity;     /* m/s^2, each component within 2^15; 0 at first. */
-  double damping;            /* What is left of a velocity after a second, 0 to 1; 1 at first. */
-  double collision_slop;     /* Sequential impulses: overlap that is left alone, m, 0 to 2^8. */
-  double collision_bias;     /* Sequential impulses: what is left of an overlap after a second, 0 to 1. */
-  double contact_hertz;      /* Soft step: greatest stiffness of contacts, 1/s, 0 to 1000; 1000 at first. */
-  double contact_damping;    /* Soft step: their damping, 0 to 100, 1 being critical; 10 at first. */
-  double contact_push_speed; /* Soft step: the greatest speed at which overlaps are pushed apart, m/s. */
-  double contact_margin;     /* Soft step: shapes this close are solved before they touch, m, 0 to 1. */
-  double bounce_threshold;   /* Soft step: slower impacts do not bounce, m/s. */
-  double world_extent;       /* Bodies are held within it along each axis, m, above 0, at most 2^20. */
+      collision_persistence;   /* Steps for which a contact that came apart keeps its impulses; 3 at first. */
+  samestep_vec2 gravity;       /* m/s^2, each component within 2^15; 0 at first. */
+  double damping;              /* What is left of a velocity after a second, 0 to 1; 1 at first. */
+  double collision_slop;       /* Sequential impulses: overlap that is left alone, m, 0 to 2^8. */
+  double collision_bias;       /* Sequential impulses: what is left of an overlap after a second, 0 to 1. */
+  double contact_hertz;        /* Soft step: greatest stiffness of contacts, 1/s, 0 to 1000; 1000 at first. */
+  double contact_damping;      /* Soft step: their damping, 0 to 100, 1 being critical; 10 at first. */
+  double contact_push_speed;   /* Soft step: the greatest speed at which overlaps are pushed apart, m/s. */
+  double contact_margin;       /* Soft step: shapes this close are solved before they touch, m, 0 to 1. */
+  double bounce_threshold;     /* Soft step: slower impacts do not bounce, m/s. */
+  double world_extent;         /* Bodies are held within it along each axis, m, above 0, at most 2^20. */
+  double sleep_time_threshold; /* Rest after which islands sleep, s, 0 to 2^10; 0 at first: none does. */
+  double idle_speed_threshold; /* Bodies that are no faster are at rest, m/s, 0 to 2^10; 0.05 at first. */
 } samestep_settings;
 
 /* What a new world is to be. */
@@ -362,6 +364,8 @@ typedef struct samestep_body_state {
   int32_t rotates;
   uint32_t position_function;
   uint32_t velocity_function;
+  int32_t sleeps;    /* 1 while steps leave it alone. */
+  int32_t may_sleep; /* 0 of a body that keeps its island awake. */
 } samestep_body_state;
 
 /* What drawing needs of a body. */
@@ -436,6 +440,14 @@ SAMESTEP_C_API samestep_status samestep_body_set_type(samestep_world* world, sam
 /* Any 64 bits; state, saved and hashed: an index or id of the game's, never an address. */
 SAMESTEP_C_API samestep_status samestep_body_set_user_data(samestep_world* world, samestep_body_id body,
                                                            uint64_t user_data);
+/* Wakes a body, with its island as the next step begins. So does each other function that changes anything.
+ */
+SAMESTEP_C_API samestep_status samestep_body_activate(samestep_world* world, samestep_body_id body);
+/* Spares a dynamic body the wait: it sleeps as soon as its island is at rest. */
+SAMESTEP_C_API samestep_status samestep_body_sleep(samestep_world* world, samestep_body_id body);
+/* Whether the body may ever sleep, and with it what touches it: 1 at first. */
+SAMESTEP_C_API samestep_status samestep_body_set_may_sleep(samestep_world* world, samestep_body_id body,
+                                                           int32_t may_sleep);
 /* The numbers of the functions that move the body and change its velocity; 0: the engine's own. */
 SAMESTEP_C_API samestep_status samestep_body_set_functions(samestep_world* world, samestep_body_id body,
                                                            uint32_t position_function,
