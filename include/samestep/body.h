@@ -279,12 +279,13 @@ class Body {
     if (activity_ == Activity::asleep) activity_ = Activity::roused;
   }
   /// Sets a field; what was so already wakes nobody.
+  /// @param counts  false where it is nothing to a body of this type
   template <class T>
-  void put(T& field, const T& value) {
+  void put(T& field, const T& value, bool counts = true) {
     const bool same = field == value;
     // Zeros of two signs are equal, and not the same.
     field = value;
-    if (!same) rouse();
+    if (!same && counts) rouse();
   }
 
   struct Motion {

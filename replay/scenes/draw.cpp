@@ -218,7 +218,7 @@ class Artist {
     const auto bodyOf = [&](ShapeId id) -> const Body<S>& {
       return space_.body(world.shapes.valueAt(id.index).body());
     };
-    for (const Pair<S>& pair : world.pairs) {
+    const auto draw = [&](const Pair<S>& pair) {
       const bool touches =
           pair.age == 0 && (pair.state == ArbiterState::firstCollision || pair.state == ArbiterState::normal);
       for (int i = 0; touches && i < pair.count; ++i) {
@@ -230,6 +230,9 @@ class Artist {
                 place("x1", "y1", at) +
                 place("x2", "y2", at + rotate(pair.localNormal, a.rotation()) * (unit_ * S(7))) + "/>\n";
       }
+    };
+    for (const auto* pairs : {&world.pairs, &world.restingPairs}) {
+      for (const Pair<S>& pair : *pairs) draw(pair);
     }
     out_ += "</g>\n";
   }

@@ -345,7 +345,11 @@ void Derived<S>::putBoxesOf(const WorldState<S>& world, std::uint32_t bodyIndex)
 }
 
 template <Scalar S>
-void Derived<S>::placeOne(const WorldState<S>& world, std::uint32_t shape) {
+void Derived<S>::placeForSleepers(const WorldState<S>& world, std::uint32_t shape) {
+  if (keepPlaced) return;
+  for (const std::uint32_t body : touched) {
+    if (world.bodies.aliveAt(body) && world.bodies.valueAt(body).isSleeping()) placeShapesOf(world, body);
+  }
   const Body<S>& holder = world.bodies.valueAt(traits[shape].body);
   place(Transform<S>::rigid(holder.position(), holder.rotation()), placed[shape]);
 }

@@ -234,8 +234,8 @@ struct Derived {
     if (mostSleepers == kNone) findActive(world);
     return mostSleepers != 0;
   }
-  /// Places one shape where its body is.
-  void placeOne(const WorldState<S>& world, std::uint32_t shape);
+  /// Places one shape where its body is, and sleepers that nobody has placed: what eachSleeperNear needs.
+  void placeForSleepers(const WorldState<S>& world, std::uint32_t shape);
   /// Calls visit(body slot) for each shape of a sleeper that the box of a shape is near and that may touch
   /// it.
   template <class Visit>

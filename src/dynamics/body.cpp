@@ -185,8 +185,8 @@ void Body<S>::setMassProperties(const MassProperties<S>& properties) {
                               kMinMass<S>, " to ", kMaxMass<S>, " kg");
   requireWithin(properties.centerOfMass, kMaxCenterOfMass<S>, "a body: centre of mass is ", " m");
 
-  put(mass_, mass);
-  put(moment_, properties.moment);
+  put(mass_, mass, isDynamic());
+  put(moment_, properties.moment, isDynamic());
   moveCenter(properties.centerOfMass);
   derive();
 }
@@ -215,7 +215,7 @@ void Body<S>::moveCenter(const Vector<S>& center) {
     velocityBias_ = heldWithin(velocityBias_ + (after * angularVelocityBias_ - before * angularVelocityBias_),
                                kMaxSpeed<S>);
   }
-  put(centerOfMass_, center);
+  put(centerOfMass_, center, isDynamic());
   center_ = origin + rotate(centerOfMass_, rotation_);
 }
 
@@ -251,7 +251,7 @@ template <Scalar S>
 void Body<S>::setForce(const Vector<S>& force) {
   requireWithin(force, kMaxForce<S>, "Body::setForce: force is ", " N");
 
-  put(force_, force);
+  put(force_, force, isDynamic());
 }
 
 template <Scalar S>
@@ -281,7 +281,7 @@ template <Scalar S>
 void Body<S>::setTorque(S torque) {
   requireWithin(torque, kMaxForce<S>, "Body::setTorque: torque is ", " N m");
 
-  put(torque_, torque);
+  put(torque_, torque, isDynamic());
 }
 
 template <Scalar S>
@@ -332,8 +332,8 @@ void Body<S>::applyForce(const Vector<S>& force, const Vector<S>& worldPoint) {
   requireWithin(sum, kMaxForce<S>, "Body::applyForce: the sum of forces is ", " N");
   requireWithin(torque, kMaxForce<S>, "Body::applyForce: the sum of torques is ", " N m");
 
-  put(force_, sum);
-  put(torque_, torque);
+  put(force_, sum, isDynamic());
+  put(torque_, torque, isDynamic());
 }
 
 template <Scalar S>

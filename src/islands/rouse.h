@@ -43,7 +43,7 @@ struct Rouse {
   /// Those near a shape that came to be where it is.
   static void near(World& world, Derived<S>& derived, std::uint32_t shape) {
     if (!derived.anySleeps(world)) return;
-    derived.placeOne(world, shape);
+    derived.placeForSleepers(world, shape);
     derived.eachSleeperNear(world, shape, [&](std::uint32_t slot) { sleeper(world, derived, slot); });
   }
 };

@@ -140,6 +140,30 @@ static void test_difference(int32_t scalar) {
   check_status(samestep_world_destroy(b), SAMESTEP_OK, "destroy", __LINE__);
 }
 
+static void test_sleep(int32_t scalar) {
+  samestep_world* world = make_world(scalar);
+  samestep_shape_id shape = 0;
+  const samestep_body_id body = add_box(world, SAMESTEP_DYNAMIC, 1, 2, &shape);
+  samestep_settings settings;
+  samestep_body_state state;
+  check_status(samestep_world_get_settings(world, &settings), SAMESTEP_OK, "settings", __LINE__);
+  check(settings.sleep_time_threshold == 0, "nothing sleeps at first", __LINE__);
+  settings.gravity.y = 0;
+  settings.sleep_time_threshold = 8;
+  check_status(samestep_world_set_settings(world, &settings), SAMESTEP_OK, "settings", __LINE__);
+  check_status(samestep_body_sleep(world, body), SAMESTEP_OK, "sleep", __LINE__);
+  check_status(samestep_world_step(world, 0.015625), SAMESTEP_OK, "step", __LINE__);
+  check_status(samestep_body_get(world, body, &state), SAMESTEP_OK, "get", __LINE__);
+  check(state.sleeps == 1 && state.may_sleep == 1, "it sleeps", __LINE__);
+  check_status(samestep_body_activate(world, body), SAMESTEP_OK, "activate", __LINE__);
+  check_status(samestep_body_set_may_sleep(world, body, 0), SAMESTEP_OK, "may not", __LINE__);
+  check_status(samestep_body_sleep(world, body), SAMESTEP_OK, "sleep", __LINE__);
+  check_status(samestep_world_step(world, 0.015625), SAMESTEP_OK, "step", __LINE__);
+  check_status(samestep_body_get(world, body, &state), SAMESTEP_OK, "get", __LINE__);
+  check(state.sleeps == 0 && state.may_sleep == 0, "it does not", __LINE__);
+  check_status(samestep_world_destroy(world), SAMESTEP_OK, "destroy", __LINE__);
+}
+
 static void test_bodies(int32_t scalar) {
   samestep_world* world = make_world(scalar);
   samestep_shape_id shape = 0;
@@ -272,6 +296,7 @@ void test_state(void) {
     test_interrupts(built[i]);
     test_difference(built[i]);
     test_bodies(built[i]);
+    test_sleep(built[i]);
     test_shapes(built[i]);
     check_equal(given(built[i], 1), given(built[i], 0), "given ids", __LINE__);
     test_fingerprint(built[i]);

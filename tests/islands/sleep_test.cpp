@@ -448,7 +448,7 @@ TYPED_TEST(SleepTest, AKinematicBodyThatStartsWakesWhatItTouchesAndCarries) {
     space.body(ram).setVelocity({S(2), S(0)});
     for (int i = 0; i < 90; ++i) space.step(kTick<S>);
     EXPECT_LT(double(space.body(ram).position().x), 0.0);
-    EXPECT_TRUE(space.body(rider).isSleeping()) << "it is still half a metre away";
+    EXPECT_TRUE(space.body(rider).isSleeping()) << "it is not there yet";
     for (int i = 0; i < 64; ++i) space.step(kTick<S>);
     EXPECT_GT(double(space.body(rider).position().x), 1.0);
   }

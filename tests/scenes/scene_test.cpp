@@ -153,7 +153,9 @@ TYPED_TEST(SceneTest, EachSettingIsHeard) {
                              {"contactPushSpeed", "1.5"},
                              {"contactMargin", "0.25"},
                              {"bounceThreshold", "2"},
-                             {"worldExtent", "100"}});
+                             {"worldExtent", "100"},
+                             {"sleepTimeThreshold", "0.5"},
+                             {"idleSpeedThreshold", "0.25"}});
 }
 
 TYPED_TEST(SceneTest, EachKeyOfABodyIsHeard) {
@@ -162,6 +164,7 @@ TYPED_TEST(SceneTest, EachKeyOfABodyIsHeard) {
                              {"mass", "2"},
                              {"moment", "3"},
                              {"rotates", "false"},
+                             {"maySleep", "false"},
                              {"position", "[1, 2]"},
                              {"angle", "1"},
                              {"velocity", "[1, 0]"},

@@ -183,7 +183,8 @@ TYPED_TEST(SectionsTest, EachRecordIsChecked) {
             }),
             "a shape is on a body that does not exist");
   EXPECT_EQ(flawAfter([](auto& w) { w.pairs[0].count = kMaxContactsPerPair + 1; }), "a pair is malformed");
-  EXPECT_EQ(flawAfter([](auto& w) { w.restingPairs[0].count = kMaxContactsPerPair + 1; }), "a pair is malformed");
+  EXPECT_EQ(flawAfter([](auto& w) { w.restingPairs[0].count = kMaxContactsPerPair + 1; }),
+            "a pair is malformed");
   EXPECT_EQ(flawAfter([](auto& w) { w.pairs.push_back(w.restingPairs[0]); }),
             "a pair rests among those that do not");
   EXPECT_EQ(flawAfter([](auto& w) { w.restingPairs.insert(w.restingPairs.begin(), w.pairs[0]); }),

@@ -50,7 +50,8 @@ BodyId bodyOf(const Space<S>& space, ShapeId shape) {
   return space.shape(shape).body();
 }
 
-/// A kinematic disc in a static one, which are a resting pair after a step, in a world where things may sleep.
+/// A kinematic disc in a static one, which are a resting pair after a step, in a world where things may
+/// sleep.
 template <Scalar S>
 void addResting(Space<S>& space, const Vector<S>& position) {
   space.setSleepTimeThreshold(S(1));
