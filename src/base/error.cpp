@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -10,123 +11,96 @@
 
 namespace samestep {
 
-const char* message(Fault fault) {
-  switch (fault) {
-    case Fault::AttachedBody:
-      return "You have already added this body to another space. You cannot add it to a second.";
-    case Fault::AttachedShape:
-      return "You have already added this shape to another space. You cannot add it to a second.";
-    case Fault::AttachedStaticBody:
-      return "Internal Error: Changing the designated static body while the old one still had shapes "
-             "attached.";
-    case Fault::AttachedStaticIndex:
-      return "This static index is already associated with a dynamic index.";
-    case Fault::BodyNotFound:
-      return "Cannot remove a body that was not added to the space. (Removed twice maybe?)";
-    case Fault::BufferOverflow:
-      return "Internal Error: Contact buffer overflow!";
-    case Fault::CollisionContactOverflow:
-      return "Internal Error: Tried to push too many contacts.";
-    case Fault::CollisionError:
-      return "Internal Error: Shape types are not sorted.";
-    case Fault::ContactIndexOutOfBounds:
-      return "Index error: The specified contact index is invalid for this arbiter.";
-    case Fault::DuplicateBody:
-      return "You have already added this body to this space. You must not add it a second time.";
-    case Fault::DuplicateShape:
-      return "You have already added this shape to this space. You must not add it a second time.";
-    case Fault::IllegalBody:
-      return "Body's state is invalid.";
-    case Fault::IllegalSize:
-      return "Tried to resize a hash table to a size greater than 1610612741.";
-    case Fault::ImmutableNumContacts:
-      return "The number of contact points cannot be changed.";
-    case Fault::IndexOutOfBounds:
-      return "Index out of range.";
-    case Fault::InfiniteMass:
-      return "Mass must be positive and finite.";
-    case Fault::InsufficientBufferSize:
-      return "Internal Error: Buffer size too small.";
-    case Fault::InvalidChild:
-      return "Internal Error: Node is not a child of parent.";
-    case Fault::InvalidIter:
-      return "Iterations must be positive and non-zero.";
-    case Fault::LeafError:
-      return "Internal Error: Cannot replace child of a leaf.";
-    case Fault::MainStaticBody:
-      return "Cannot remove the designated static body for the space.";
-    case Fault::NaNMass:
-      return "Body's mass is NaN.";
-    case Fault::NaNMoment:
-      return "Body's moment is NaN.";
-    case Fault::NegativeElasticity:
-      return "Elasticity must be a positive quantity.";
-    case Fault::NegativeFriction:
-      return "Friction must be a positive quantity.";
-    case Fault::NegativeHalfDimensions:
-      return "Half-dimensions should be nonnegative.";
-    case Fault::NegativeMass:
-      return "Body's mass is negative.";
-    case Fault::NegativeMoment:
-      return "Body's moment is negative.";
-    case Fault::NegativeRadius:
-      return "Radius should be nonnegative.";
-    case Fault::NotCircleShape:
-      return "Shape is not a circle shape.";
-    case Fault::NotSegmentShape:
-      return "Shape is not a segment shape.";
-    case Fault::NotPolyShape:
-      return "Shape is not a poly shape.";
-    case Fault::SameVertices:
-      return "Internal Error: EPA vertices are the same.";
-    case Fault::ShapeNotFound:
-      return "Cannot remove a shape that was not added to the space. (Removed twice maybe?)";
-    case Fault::SpaceLocked:
-      return "This operation cannot be done safely during a call to step() or during a query. Put these "
-             "calls "
-             "into a post-step callback.";
-    case Fault::SpaceLockUnderflow:
-      return "Internal Error: Space lock underflow.";
-    case Fault::StaticBodyMass:
-      return "You cannot set the mass of static bodies.";
-    case Fault::UnsolvableCollision:
-      return "Unsolvable collision or constraint.";
-    case Fault::InfiniteMoment:
-      return "Body's moment is infinite. Use Body::nonRotating for a body that does not turn.";
-    case Fault::MassOutOfRange:
-      return "Mass must be 0 or from 1e-3 to 1e6 kg.";
-    case Fault::MomentOutOfRange:
-      return "Moment must be 0 or from 2^-20 to 2^30 kg m^2.";
-    case Fault::SizeOutOfRange:
-      return "A length of the shape is outside the supported range.";
-    case Fault::ValueOutOfRange:
-      return "The value is not a finite number in its documented range.";
-    case Fault::DegenerateShape:
-      return "The points do not form a convex shape with an area.";
-    case Fault::TooManyVertices:
-      return "A polygon cannot have that many vertices.";
-    case Fault::BodyHasShapes:
-      return "Remove the shapes of a body before the body.";
-    case Fault::MissingCallback:
-      return "No callback is registered under this number.";
-    case Fault::ForeignWorld:
-      return "The saved state belongs to another kind of world.";
-    case Fault::MalformedBytes:
-      return "These bytes are not what they should be.";
-    case Fault::KernelUnavailable:
-      return "This build or this processor does not have that kernel.";
-    case Fault::IllegalId:
-      return "A given id must have an odd generation, higher than any its slot has had.";
-    case Fault::UnsoundArithmetic:
-      return "The processor is in a mode in which double gives other results.";
-    case Fault::Interrupted:
-      return "The call was to end; a world that it was changing must be restored.";
-    case Fault::LeftMidway:
-      return "A call that failed left this world midway: restore one, or bring one in, before anything else.";
-    case Fault::TooManyPairs:
-      return "More shapes are near each other than this Space may hold as pairs; see Space::setMaxPairs.";
+namespace {
+
+struct FaultMessage {
+  Fault fault;
+  const char* text;
+};
+
+/// Messages of the faults, in their order.
+constexpr FaultMessage kMessages[] = {
+    {Fault::AttachedBody,
+     "You have already added this body to another space. You cannot add it to a second."},
+    {Fault::AttachedShape,
+     "You have already added this shape to another space. You cannot add it to a second."},
+    {Fault::AttachedStaticBody,
+     "Internal Error: Changing the designated static body while the old one still had shapes "
+     "attached."},
+    {Fault::AttachedStaticIndex, "This static index is already associated with a dynamic index."},
+    {Fault::BodyNotFound, "Cannot remove a body that was not added to the space. (Removed twice maybe?)"},
+    {Fault::BufferOverflow, "Internal Error: Contact buffer overflow!"},
+    {Fault::CollisionContactOverflow, "Internal Error: Tried to push too many contacts."},
+    {Fault::CollisionError, "Internal Error: Shape types are not sorted."},
+    {Fault::ContactIndexOutOfBounds, "Index error: The specified contact index is invalid for this arbiter."},
+    {Fault::DuplicateBody,
+     "You have already added this body to this space. You must not add it a second time."},
+    {Fault::DuplicateShape,
+     "You have already added this shape to this space. You must not add it a second time."},
+    {Fault::IllegalBody, "Body's state is invalid."},
+    {Fault::IllegalSize, "Tried to resize a hash table to a size greater than 1610612741."},
+    {Fault::ImmutableNumContacts, "The number of contact points cannot be changed."},
+    {Fault::IndexOutOfBounds, "Index out of range."},
+    {Fault::InfiniteMass, "Mass must be positive and finite."},
+    {Fault::InsufficientBufferSize, "Internal Error: Buffer size too small."},
+    {Fault::InvalidChild, "Internal Error: Node is not a child of parent."},
+    {Fault::InvalidIter, "Iterations must be positive and non-zero."},
+    {Fault::LeafError, "Internal Error: Cannot replace child of a leaf."},
+    {Fault::MainStaticBody, "Cannot remove the designated static body for the space."},
+    {Fault::NaNMass, "Body's mass is NaN."},
+    {Fault::NaNMoment, "Body's moment is NaN."},
+    {Fault::NegativeElasticity, "Elasticity must be a positive quantity."},
+    {Fault::NegativeFriction, "Friction must be a positive quantity."},
+    {Fault::NegativeHalfDimensions, "Half-dimensions should be nonnegative."},
+    {Fault::NegativeMass, "Body's mass is negative."},
+    {Fault::NegativeMoment, "Body's moment is negative."},
+    {Fault::NegativeRadius, "Radius should be nonnegative."},
+    {Fault::NotCircleShape, "Shape is not a circle shape."},
+    {Fault::NotSegmentShape, "Shape is not a segment shape."},
+    {Fault::NotPolyShape, "Shape is not a poly shape."},
+    {Fault::SameVertices, "Internal Error: EPA vertices are the same."},
+    {Fault::ShapeNotFound, "Cannot remove a shape that was not added to the space. (Removed twice maybe?)"},
+    {Fault::SpaceLocked,
+     "This operation cannot be done safely during a call to step() or during a query. Put these calls"
+     " into a post-step callback."},
+    {Fault::SpaceLockUnderflow, "Internal Error: Space lock underflow."},
+    {Fault::StaticBodyMass, "You cannot set the mass of static bodies."},
+    {Fault::UnsolvableCollision, "Unsolvable collision or constraint."},
+    {Fault::InfiniteMoment,
+     "Body's moment is infinite. Use Body::nonRotating for a body that does not turn."},
+    {Fault::MassOutOfRange, "Mass must be 0 or from 1e-3 to 1e6 kg."},
+    {Fault::MomentOutOfRange, "Moment must be 0 or from 2^-20 to 2^30 kg m^2."},
+    {Fault::SizeOutOfRange, "A length of the shape is outside the supported range."},
+    {Fault::ValueOutOfRange, "The value is not a finite number in its documented range."},
+    {Fault::DegenerateShape, "The points do not form a convex shape with an area."},
+    {Fault::TooManyVertices, "A polygon cannot have that many vertices."},
+    {Fault::BodyHasShapes, "Remove the shapes of a body before the body."},
+    {Fault::MissingCallback, "No callback is registered under this number."},
+    {Fault::ForeignWorld, "The saved state belongs to another kind of world."},
+    {Fault::MalformedBytes, "These bytes are not what they should be."},
+    {Fault::KernelUnavailable, "This build or this processor does not have that kernel."},
+    {Fault::IllegalId, "A given id must have an odd generation, higher than any its slot has had."},
+    {Fault::UnsoundArithmetic, "The processor is in a mode in which double gives other results."},
+    {Fault::TooManyPairs,
+     "More shapes are near each other than this Space may hold as pairs; see Space::setMaxPairs."},
+    {Fault::Interrupted, "The call was to end; a world that it was changing must be restored."},
+    {Fault::LeftMidway,
+     "A call that failed left this world midway: restore one, or bring one in, before anything else."},
+};
+
+constexpr bool eachFaultHasItsMessage() {
+  for (std::size_t i = 0; i < std::size(kMessages); ++i) {
+    if (kMessages[i].fault != static_cast<Fault>(i)) return false;
   }
-  return "Unknown fault.";
+  return std::size(kMessages) == kFaults;
+}
+static_assert(eachFaultHasItsMessage());
+
+}  // namespace
+
+const char* message(Fault fault) {
+  const auto index = static_cast<std::size_t>(fault);
+  return index < kFaults ? kMessages[index].text : "Unknown fault.";
 }
 
 #ifndef SAMESTEP_FIXED_ONLY

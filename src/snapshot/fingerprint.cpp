@@ -24,13 +24,13 @@ const volatile std::uint64_t kSeed = 0x9e3779b97f4a7c15u;
 template <Scalar S>
 class Samples {
  public:
-  /// In about [-limit, limit].
+  /// Number in about [-limit, limit].
   S next(int limit) {
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     const int whole = static_cast<int>((state_ >> 33) % static_cast<unsigned>(2 * limit)) - limit;
     return S(whole) + ratio<S>(static_cast<int>(state_ >> 17 & 0xffff), 1 << 16);
   }
-  /// In about [1, limit].
+  /// Number in about [1, limit].
   S positive(int limit) { return S(1) + abs(next(limit - 1)); }
 
  private:

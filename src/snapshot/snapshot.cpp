@@ -14,7 +14,7 @@
 namespace samestep {
 namespace {
 
-/// Not text, spoilt by whatever changes line ends or cuts the eighth bit.
+/// Magic that is not text, spoilt by whatever changes line ends or cuts the eighth bit.
 constexpr std::uint8_t kSnapshotMagic[8] = {0x89, 'S', 'A', 'M', 'S', '\r', '\n', 0x1a};
 
 // Offsets of the header.

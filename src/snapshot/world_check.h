@@ -20,11 +20,11 @@ const char* flawOfSettings(const Settings<S>& settings) {
                                                                                S(0), kMaxSpeed<S>);
   const bool sequential = settings.iterations >= 1 && settings.iterations <= 1000 &&
                           in(settings.collisionSlop, S(0), S(256)) && in(settings.collisionBias, S(0), S(1));
-  const bool soft =
-      settings.substeps >= 1 && settings.substeps <= 100 && in(settings.contactHertz, S(0), S(1000)) &&
-      in(settings.contactDamping, S(0), S(100)) &&
-      in(settings.contactPushSpeed, S(0), kMaxSpeed<S>)&&in(settings.contactMargin, S(0), S(1)) &&
-      in(settings.bounceThreshold, S(0), kMaxSpeed<S>);
+  const S fastest = kMaxSpeed<S>;
+  const bool soft = settings.substeps >= 1 && settings.substeps <= 100 &&
+                    in(settings.contactHertz, S(0), S(1000)) && in(settings.contactDamping, S(0), S(100)) &&
+                    in(settings.contactPushSpeed, S(0), fastest) && in(settings.contactMargin, S(0), S(1)) &&
+                    in(settings.bounceThreshold, S(0), fastest);
   return both && sequential && soft ? nullptr : "a setting is out of range";
 }
 
