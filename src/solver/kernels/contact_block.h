@@ -57,8 +57,8 @@ template <class N>
 struct alignas(4 * sizeof(typename N::Speed)) SoftBody {
   /// x, y, angular, 0: m/s, rad/s.
   typename N::Speed velocity[4];
-  /// Since the step began: x, y, m; the angle, rad; half its square: how far turning moves a point towards
-  /// the centre, per metre.
+  /// Motion since the step began: x, y, m; the angle, rad; half its square: how far turning moves a point
+  /// towards the centre, per metre.
   typename N::Speed moved[4];
 };
 
@@ -103,7 +103,7 @@ struct BlockAxis<N, true> : BlockAxis<N, false> {
 template <class N>
 struct BlockPoint {
   BlockAxis<N> normal, tangent;
-  /// Between the surfaces along the normal when the step began, m.
+  /// Separation of the surfaces along the normal when the step began, m.
   alignas(64) typename N::Speed separation[N::kLanes];
   /// Speed at which the surfaces may still come nearer, or, if not above 0, at which a spring holds them to
   /// overlap less: by where the bodies were when they moved last, m/s.
@@ -124,7 +124,7 @@ struct alignas(64) BlockInput {
   using Coefficient = typename N::Coefficient;
   /// Rotation of each body.
   Coefficient cosA[N::kLanes], sinA[N::kLanes], cosB[N::kLanes], sinB[N::kLanes];
-  /// In A's coordinates.
+  /// Normal in A's coordinates.
   Coefficient normalX[N::kLanes], normalY[N::kLanes];
   /// The spin that an impulse u of 1 gives each body at an arm of 1.
   Coefficient momentA[N::kLanes], momentB[N::kLanes];

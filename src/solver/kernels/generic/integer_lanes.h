@@ -102,7 +102,7 @@ class WideLanes {
   }
   static void note(const char*, V) {}
 
-  /// In [0, 1], in units of 2^-32: 0 or 1, and a part of 32 bits with a sign.
+  /// Factor in [0, 1], in units of 2^-32: 0 or 1, and a part of 32 bits with a sign.
   struct Factor {
     V whole, part;
   };

@@ -18,133 +18,181 @@ struct LaneMotion {
 /// Pass over the contacts: with springs before any body moves, with springs, or without them.
 enum class Pass { start, solve, relax };
 
-/// One pair of each lane. With springs friction comes first, against the normal impulses so far, and the
-/// normals have the last word; without them friction comes last, against what the normals then are, since it
-/// would otherwise be held by impulses that relaxing is about to lower.
+/// One pair of each lane in a pass: its bodies' motions and the impulses so far. With springs friction comes
+/// first, against the normal impulses so far, and the normals have the last word; without them friction comes
+/// last, against what the normals then are, since it would otherwise be held by impulses that relaxing is
+/// about to lower.
 /// @tparam kStays  whether there are pairs in the block that springs do not push apart
-template <class L, Pass kPass, bool kStays, class N = typename L::Numbers>
-[[gnu::always_inline]] inline void solveLanes(ContactBlock<N>& block, BlockRest<N>& rest, int lane,
-                                              SoftBody<N>* bodies, const SoftConstants<N>& constants,
-                                              L& lanes) {
+template <class L, Pass kPass, bool kStays, class N>
+struct LanePass {
   using V = typename L::V;
   using C = typename L::C;
+
+  ContactBlock<N>& block;
+  BlockRest<N>& rest;
+  const int lane;
+  SoftBody<N>* const bodies;
+  const SoftConstants<N>& constants;
+  L& lanes;
+  const C nx, ny, friction;
   LaneMotion<L> velocityA, velocityB, movedA, movedB;
-  V bendA, bendB;
-  L::gatherVelocity(bodies, block.bodyA + lane, velocityA.x, velocityA.y, velocityA.turn);
-  L::gatherVelocity(bodies, block.bodyB + lane, velocityB.x, velocityB.y, velocityB.turn);
+  V bendA, bendB, apart;
+  V normalSpeed, tangentSpeed, normalPart, tangentPart;
+  int points;
 
-  const C nx = L::coefficient(block.normalX + lane);
-  const C ny = L::coefficient(block.normalY + lane);
-  const C friction = L::coefficient(block.friction + lane);
-  const V dx = velocityB.x - velocityA.x;
-  const V dy = velocityB.y - velocityA.y;
-  V normalSpeed = L::dot2(nx, dx, ny, dy);
-  V tangentSpeed = L::cross2(nx, dy, ny, dx) + L::load(block.surface + lane);
-  V normalPart = L::zero();
-  V tangentPart = L::zero();
-  const int points = L::pointsOf(block, lane);
+  [[gnu::always_inline]] LanePass(ContactBlock<N>& ofBlock, BlockRest<N>& ofRest, int atLane,
+                                  SoftBody<N>* ofBodies, const SoftConstants<N>& with, L& in)
+      : block(ofBlock),
+        rest(ofRest),
+        lane(atLane),
+        bodies(ofBodies),
+        constants(with),
+        lanes(in),
+        nx(L::coefficient(ofBlock.normalX + atLane)),
+        ny(L::coefficient(ofBlock.normalY + atLane)),
+        friction(L::coefficient(ofBlock.friction + atLane)) {}
 
-  V apart;
-  if constexpr (kPass == Pass::relax) {
+  [[gnu::always_inline]] void gather() {
+    L::gatherVelocity(bodies, block.bodyA + lane, velocityA.x, velocityA.y, velocityA.turn);
+    L::gatherVelocity(bodies, block.bodyB + lane, velocityB.x, velocityB.y, velocityB.turn);
+    const V dx = velocityB.x - velocityA.x;
+    const V dy = velocityB.y - velocityA.y;
+    normalSpeed = L::dot2(nx, dx, ny, dy);
+    tangentSpeed = L::cross2(nx, dy, ny, dx) + L::load(block.surface + lane);
+    normalPart = L::zero();
+    tangentPart = L::zero();
+    points = L::pointsOf(block, lane);
+  }
+
+  /// Gathers how far the bodies have moved since the step began.
+  [[gnu::always_inline]] void gatherMoved() {
     L::gatherMoved(bodies, block.bodyA + lane, movedA.x, movedA.y, movedA.turn, bendA);
     L::gatherMoved(bodies, block.bodyB + lane, movedB.x, movedB.y, movedB.turn, bendB);
     bendA = L::unless(block.roundA, lane, bendA);
     bendB = L::unless(block.roundB, lane, bendB);
     apart = L::dot2(nx, movedB.x - movedA.x, ny, movedB.y - movedA.y);
   }
-  const auto rub = [&]() __attribute__((always_inline)) {
-    for (int i = 0; i < points; ++i) {
-      auto& axis = block.point[i].tangent;
-      const C armA = L::coefficient(axis.armA + lane);
-      const C armB = L::coefficient(axis.armB + lane);
-      const V before = L::load(axis.sum + lane);
-      const V limit = L::frictionLimit(block, friction, L::load(block.point[i].normal.sum + lane));
-      const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
-      const V sum = lanes.checked(
-          L::within(before - L::product(L::coefficient(axis.mass + lane), speed), -limit, limit));
-      L::store(axis.sum + lane, sum);
-      const V change = lanes.checkedChange(sum - before);
-      tangentSpeed = tangentSpeed + change;
-      tangentPart = tangentPart + change;
-      velocityA.turn = lanes.checkedTurn(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
-      velocityB.turn = lanes.checkedTurn(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
-      L::note("soft step: friction limit", limit);
-      L::note("soft step: relative speed", speed);
-      if constexpr (kPass == Pass::relax) {
-        L::store(rest.tangentTotal[i] + lane, lanes.checkedTotal(L::load(rest.tangentTotal[i] + lane) + sum));
-      }
-    }
-  };
-  const auto push = [&]() __attribute__((always_inline)) {
-    for (int i = 0; i < points; ++i) {
-      auto& axis = block.point[i].normal;
-      const C armA = L::coefficient(axis.armA + lane);
-      const C armB = L::coefficient(axis.armB + lane);
-      const V before = L::load(axis.sum + lane);
-      const C mass = L::coefficient(axis.mass + lane);
-      const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
-      V target, correction;
-      if constexpr (kPass == Pass::solve) {
-        target = L::load(block.point[i].target + lane);
-      } else {
-        V separation = L::load(block.point[i].separation + lane);
-        if constexpr (kPass == Pass::relax) {
-          // The arms of the tangent are r . n: how far a bend comes nearer.
-          separation = separation + apart +
-                       L::crosses(armB, movedB.turn, armA, movedA.turn,  //
-                                  L::coefficient(block.point[i].tangent.armA + lane), bendA,
-                                  L::coefficient(block.point[i].tangent.armB + lane), bendB);
-        }
-        separation = L::near(separation, constants);
-        // Not touching yet: may come as near as it is within this substep.
-        const V gap = L::rate(separation, constants.perSubstep);
-        const V apartSpeed =
-            L::greater(L::rate(separation, L::softness(block.stiff, lane, constants.softness).biasRate),
-                       L::all(-constants.pushSpeed));
-        target = L::select(L::above(separation, L::zero()), gap, apartSpeed);
-        L::store(block.point[i].target + lane, target);
-        L::note("soft step: target speed", gap);
-      }
-      if constexpr (kPass == Pass::relax) {
-        correction = L::product(mass, lanes.checked(speed + L::greater(target, L::zero())));
-      } else {
-        const auto soft = L::softness(block.stiff, lane, constants.softness);
-        V wanted = target;
-        if constexpr (kStays) wanted = L::greater(target, L::unless(block.stays, lane, target));
-        const V full = L::product(mass, lanes.checked(speed + wanted));
-        correction = L::select(L::above(target, L::zero()), full, L::soften(soft, full, before));
-      }
-      const V sum = lanes.checked(L::pushing(before - correction, constants));
-      L::store(axis.sum + lane, sum);
-      const V change = lanes.checkedChange(sum - before);
-      normalSpeed = normalSpeed + change;
-      normalPart = normalPart + change;
-      velocityA.turn = lanes.checkedTurn(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
-      velocityB.turn = lanes.checkedTurn(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
-      L::note("soft step: relative speed", speed);
-      if constexpr (kPass == Pass::relax) {
-        L::store(rest.normalTotal[i] + lane, lanes.checkedTotal(L::load(rest.normalTotal[i] + lane) + sum));
-      }
-    }
-  };
-  if constexpr (kPass == Pass::relax) {
-    push();
-    rub();
-  } else {
-    rub();
-    push();
+
+  /// Gives the spins of both bodies what a change of an impulse does to them.
+  template <class Axis>
+  [[gnu::always_inline]] void turn(const Axis& axis, C armA, C armB, V change) {
+    velocityA.turn = lanes.checkedTurn(velocityA.turn - L::spinA(block.moments, axis, lane, armA, change));
+    velocityB.turn = lanes.checkedTurn(velocityB.turn + L::spinB(block.moments, axis, lane, armB, change));
   }
 
-  const C ax = L::coefficient(block.pushAX + lane);
-  const C ay = L::coefficient(block.pushAY + lane);
-  const C bx = nx - ax;
-  const C by = ny - ay;
-  lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane,
-                        velocityA.x - L::cross2(ax, normalPart, ay, tangentPart),
-                        velocityA.y - L::dot2(ay, normalPart, ax, tangentPart), velocityA.turn);
-  lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane,
-                        velocityB.x + L::cross2(bx, normalPart, by, tangentPart),
-                        velocityB.y + L::dot2(by, normalPart, bx, tangentPart), velocityB.turn);
+  /// Solves friction at a point.
+  [[gnu::always_inline]] void rub(int i) {
+    auto& axis = block.point[i].tangent;
+    const C armA = L::coefficient(axis.armA + lane);
+    const C armB = L::coefficient(axis.armB + lane);
+    const V before = L::load(axis.sum + lane);
+    const V limit = L::frictionLimit(block, friction, L::load(block.point[i].normal.sum + lane));
+    const V speed = lanes.checked(tangentSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn));
+    const V sum =
+        lanes.checked(L::within(before - L::product(L::coefficient(axis.mass + lane), speed), -limit, limit));
+    L::store(axis.sum + lane, sum);
+    const V change = lanes.checkedChange(sum - before);
+    tangentSpeed = tangentSpeed + change;
+    tangentPart = tangentPart + change;
+    turn(axis, armA, armB, change);
+    L::note("soft step: friction limit", limit);
+    L::note("soft step: relative speed", speed);
+    if constexpr (kPass == Pass::relax) {
+      L::store(rest.tangentTotal[i] + lane, lanes.checkedTotal(L::load(rest.tangentTotal[i] + lane) + sum));
+    }
+  }
+
+  /// Speed at which a point may still come nearer, or, if not above 0, at which its overlap is to become
+  /// less.
+  [[gnu::always_inline]] V targetOf(int i, C armA, C armB) {
+    if constexpr (kPass == Pass::solve) {
+      return L::load(block.point[i].target + lane);
+    } else {
+      V separation = L::load(block.point[i].separation + lane);
+      if constexpr (kPass == Pass::relax) {
+        // The arms of the tangent are r . n: how far a bend comes nearer.
+        separation = separation + apart +
+                     L::crosses(armB, movedB.turn, armA, movedA.turn,  //
+                                L::coefficient(block.point[i].tangent.armA + lane), bendA,
+                                L::coefficient(block.point[i].tangent.armB + lane), bendB);
+      }
+      separation = L::near(separation, constants);
+      // A point that does not touch yet may come as near as it is within this substep.
+      const V gap = L::rate(separation, constants.perSubstep);
+      const V apartSpeed =
+          L::greater(L::rate(separation, L::softness(block.stiff, lane, constants.softness).biasRate),
+                     L::all(-constants.pushSpeed));
+      const V target = L::select(L::above(separation, L::zero()), gap, apartSpeed);
+      L::store(block.point[i].target + lane, target);
+      L::note("soft step: target speed", gap);
+      return target;
+    }
+  }
+
+  /// Impulse that takes the speed of a point to its target.
+  [[gnu::always_inline]] V correctionOf(V speed, V target, C mass, V before) {
+    if constexpr (kPass == Pass::relax) {
+      return L::product(mass, lanes.checked(speed + L::greater(target, L::zero())));
+    } else {
+      const auto soft = L::softness(block.stiff, lane, constants.softness);
+      V wanted = target;
+      if constexpr (kStays) wanted = L::greater(target, L::unless(block.stays, lane, target));
+      const V full = L::product(mass, lanes.checked(speed + wanted));
+      return L::select(L::above(target, L::zero()), full, L::soften(soft, full, before));
+    }
+  }
+
+  /// Solves the normal of a point.
+  [[gnu::always_inline]] void push(int i) {
+    auto& axis = block.point[i].normal;
+    const C armA = L::coefficient(axis.armA + lane);
+    const C armB = L::coefficient(axis.armB + lane);
+    const V before = L::load(axis.sum + lane);
+    const C mass = L::coefficient(axis.mass + lane);
+    const V speed = normalSpeed + L::cross2(armB, velocityB.turn, armA, velocityA.turn);
+    const V target = targetOf(i, armA, armB);
+    const V correction = correctionOf(speed, target, mass, before);
+    const V sum = lanes.checked(L::pushing(before - correction, constants));
+    L::store(axis.sum + lane, sum);
+    const V change = lanes.checkedChange(sum - before);
+    normalSpeed = normalSpeed + change;
+    normalPart = normalPart + change;
+    turn(axis, armA, armB, change);
+    L::note("soft step: relative speed", speed);
+    if constexpr (kPass == Pass::relax) {
+      L::store(rest.normalTotal[i] + lane, lanes.checkedTotal(L::load(rest.normalTotal[i] + lane) + sum));
+    }
+  }
+
+  [[gnu::always_inline]] void scatter() {
+    const C ax = L::coefficient(block.pushAX + lane);
+    const C ay = L::coefficient(block.pushAY + lane);
+    const C bx = nx - ax;
+    const C by = ny - ay;
+    lanes.scatterVelocity(bodies, block.bodyA + lane, block.fixedA >> lane,
+                          velocityA.x - L::cross2(ax, normalPart, ay, tangentPart),
+                          velocityA.y - L::dot2(ay, normalPart, ax, tangentPart), velocityA.turn);
+    lanes.scatterVelocity(bodies, block.bodyB + lane, block.fixedB >> lane,
+                          velocityB.x + L::cross2(bx, normalPart, by, tangentPart),
+                          velocityB.y + L::dot2(by, normalPart, bx, tangentPart), velocityB.turn);
+  }
+};
+
+template <class L, Pass kPass, bool kStays, class N = typename L::Numbers>
+[[gnu::always_inline]] inline void solveLanes(ContactBlock<N>& block, BlockRest<N>& rest, int lane,
+                                              SoftBody<N>* bodies, const SoftConstants<N>& constants,
+                                              L& lanes) {
+  LanePass<L, kPass, kStays, N> pass(block, rest, lane, bodies, constants, lanes);
+  pass.gather();
+  if constexpr (kPass == Pass::relax) {
+    pass.gatherMoved();
+    for (int i = 0; i < pass.points; ++i) pass.push(i);
+    for (int i = 0; i < pass.points; ++i) pass.rub(i);
+  } else {
+    for (int i = 0; i < pass.points; ++i) pass.rub(i);
+    for (int i = 0; i < pass.points; ++i) pass.push(i);
+  }
+  pass.scatter();
 }
 
 template <class L, Pass kPass, class N = typename L::Numbers>
