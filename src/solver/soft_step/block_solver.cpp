@@ -181,6 +181,51 @@ void BlockSolver<S, N>::clearLane(std::uint32_t at, int lane, Taken& taken) {
   for (int i = 0; i < kMaxContactsPerPair; ++i) clearPoint(block, rest, in, lane, i);
 }
 
+/// Fills how the bodies of a pair answer an impulse by turning.
+template <Scalar S, class N>
+inline void BlockSolver<S, N>::fillMoments(Block& block, int lane, const Pair<S>& pair, const SoftFrame<S>& a,
+                                           const SoftFrame<S>& b, BlockInput<N>& in) const {
+  const auto shareA = block.shareA[lane];
+  if constexpr (kIntegers) {
+    in.momentA[lane] = momentPart(shareA, moments_[a.start]);
+    in.momentB[lane] = momentPart((1 << N::kUnitBits) - shareA, moments_[b.start]);
+  } else {
+    Vector<S> reachA, reachB;
+    for (int i = 0; FixedNumber<S> && i < pair.count; ++i) {
+      const Vector<S> toA = a.arm(pair.contacts[i].anchorA), toB = b.arm(pair.contacts[i].anchorB);
+      reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
+      reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
+    }
+    in.momentA[lane] = heldMoment((*starts_)[a.start].momentPerMass * shareA, reachA);
+    in.momentB[lane] = heldMoment((*starts_)[b.start].momentPerMass * (S(1) - shareA), reachB);
+    if constexpr (!N::kStoresSpins) {
+      block.moments.momentA[lane] = in.momentA[lane];
+      block.moments.momentB[lane] = in.momentB[lane];
+    }
+  }
+}
+
+/// Fills the arms of a contact point.
+template <Scalar S, class N>
+inline void BlockSolver<S, N>::fillPoint(typename BlockInput<N>::Point& to, int lane,
+                                         const Contact<S>& contact, const SoftFrame<S>& a,
+                                         const SoftFrame<S>& b) const {
+  const auto put = [&](auto& x, auto& y, const Vector<S>& arm, int radiusBits) {
+    if constexpr (kIntegers) {
+      // No arm matters of what does not move.
+      const bool any = radiusBits == kAnyRadiusBits;
+      x[lane] = any ? 0 : units_.arm(arm.x, radiusBits);
+      y[lane] = any ? 0 : units_.arm(arm.y, radiusBits);
+    } else {
+      x[lane] = arm.x;
+      y[lane] = arm.y;
+    }
+  };
+  put(to.armAX, to.armAY, a.arm(contact.anchorA), a.radiusBits);
+  put(to.armBX, to.armBY, b.arm(contact.anchorB), b.radiusBits);
+  to.present[lane] = kPresent<N>;
+}
+
 template <Scalar S, class N>
 bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair, std::uint32_t pairIndex,
                                 const SoftFrame<S>& a, const SoftFrame<S>& b, bool roundA, bool roundB,
@@ -214,42 +259,12 @@ bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair,
   in.sinA[lane] = units_.unit(a.rotation.y);
   in.cosB[lane] = units_.unit(b.rotation.x);
   in.sinB[lane] = units_.unit(b.rotation.y);
-  if constexpr (kIntegers) {
-    in.momentA[lane] = momentPart(shares.a, moments_[a.start]);
-    in.momentB[lane] = momentPart((1 << N::kUnitBits) - shares.a, moments_[b.start]);
-  } else {
-    Vector<S> reachA, reachB;
-    for (int i = 0; FixedNumber<S> && i < pair.count; ++i) {
-      const Vector<S> toA = a.arm(pair.contacts[i].anchorA), toB = b.arm(pair.contacts[i].anchorB);
-      reachA = {max(reachA.x, abs(toA.x)), max(reachA.y, abs(toA.y))};
-      reachB = {max(reachB.x, abs(toB.x)), max(reachB.y, abs(toB.y))};
-    }
-    in.momentA[lane] = heldMoment((*starts_)[a.start].momentPerMass * shares.a, reachA);
-    in.momentB[lane] = heldMoment((*starts_)[b.start].momentPerMass * (S(1) - shares.a), reachB);
-    if constexpr (!N::kStoresSpins) {
-      block.moments.momentA[lane] = in.momentA[lane];
-      block.moments.momentB[lane] = in.momentB[lane];
-    }
-  }
+  fillMoments(block, lane, pair, a, b, in);
   std::int64_t misfit = 0;
+  const auto kept = [&](S speed) { return units_.perUnit(units_.sum(speed, misfit), shares.perSpeed); };
   for (int i = 0; i < pair.count; ++i) {
     const Contact<S>& contact = pair.contacts[i];
-    auto& to = in.point[i];
-    const auto put = [&](auto& x, auto& y, const Vector<S>& arm, int radiusBits) {
-      if constexpr (kIntegers) {
-        // No arm matters of what does not move.
-        const bool any = radiusBits == kAnyRadiusBits;
-        x[lane] = any ? 0 : units_.arm(arm.x, radiusBits);
-        y[lane] = any ? 0 : units_.arm(arm.y, radiusBits);
-      } else {
-        x[lane] = arm.x;
-        y[lane] = arm.y;
-      }
-    };
-    put(to.armAX, to.armAY, a.arm(contact.anchorA), a.radiusBits);
-    put(to.armBX, to.armBY, b.arm(contact.anchorB), b.radiusBits);
-    to.present[lane] = kPresent<N>;
-    const auto kept = [&](S speed) { return units_.perUnit(units_.sum(speed, misfit), shares.perSpeed); };
+    fillPoint(in.point[i], lane, contact, a, b);
     auto& point = block.point[i];
     point.normal.sum[lane] = kept(clamp(contact.normalSpeed, S(0), kMaxSum<S>));
     point.tangent.sum[lane] = kept(clamp(contact.tangentSpeed, -kMaxSum<S>, kMaxSum<S>));

@@ -81,6 +81,10 @@ class BlockSolver {
   static constexpr bool kIntegers = std::derived_from<N, IntegerUnits>;
 
   void clearLane(std::uint32_t at, int lane, Taken& taken);
+  void fillMoments(Block& block, int lane, const Pair<S>& pair, const SoftFrame<S>& a, const SoftFrame<S>& b,
+                   BlockInput<N>& in) const;
+  void fillPoint(typename BlockInput<N>::Point& to, int lane, const Contact<S>& contact,
+                 const SoftFrame<S>& a, const SoftFrame<S>& b) const;
   bool placePoints(std::uint32_t at, int lane, S bounceThreshold, const Taken& taken);
   S bounceOf(Block& block, int lane, int point, S bounceThreshold, const Taken& taken) const;
   void tellKept(std::uint32_t begin, std::uint32_t end);
