@@ -40,7 +40,7 @@ struct Plan {
 
 /// Findings about one engine in one scene.
 struct Cell {
-  std::vector<double> ms;      ///< Per step, by round.
+  std::vector<double> ms;      ///< Times per step, by round.
   std::vector<double> ratios;  ///< Ratios to the reference in the same round.
   Quality quality;
   std::optional<long long> bytes;

@@ -122,7 +122,7 @@ class Table {
  public:
   virtual ~Table() = default;
   virtual Peer& own() = 0;
-  /// Before each frame; lets bots play.
+  /// Acts before each frame; lets bots play.
   virtual void update(std::uint64_t now) = 0;
 };
 

@@ -25,7 +25,8 @@ enum class ArbiterState : std::uint8_t {
 /// One contact point of a pair, as it is kept from step to step.
 template <Scalar S>
 struct Contact {
-  /// On the surface of each shape, in the coordinates of its body: where the body goes, the point goes.
+  /// Anchors on the surface of each shape, in the coordinates of its body: where the body goes, the point
+  /// goes.
   Vector<S> anchorA{};
   Vector<S> anchorB{};
   /// The accumulated impulses along the normal and its left perpendicular, as the change of speed they give
@@ -227,7 +228,7 @@ class Arbiter {
   bool isSolved() const { return pair_.solvedNormal != Vector<S>(); }
   /// Normal from the first body of the pair to the second.
   Vector<S> pairNormal() const;
-  /// On the surface of the first or the second body.
+  /// Point on the surface of the first or the second body.
   Vector<S> surfacePoint(int body, int index) const;
 
   Pair<S>& pair_;

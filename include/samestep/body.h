@@ -37,7 +37,7 @@ template <Scalar S>
 struct MassProperties {
   S mass{};
   Scaled<S> moment{};        ///< kg m^2 about the centre of mass.
-  Vector<S> centerOfMass{};  ///< In body coordinates, m.
+  Vector<S> centerOfMass{};  ///< Place in body coordinates, m.
 };
 
 /// A rigid body: mass, pose and motion about its centre of mass. MIS section 4.

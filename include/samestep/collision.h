@@ -76,7 +76,7 @@ CollisionInfo<S> collide(const PlacedShape<S>& a, const PlacedShape<S>& b, Colli
 /// One point of a ContactPointSet.
 template <Scalar S>
 struct ContactPoint {
-  Vector<S> pointA;  ///< On the surface of the first shape, in the world.
+  Vector<S> pointA;  ///< Point on the surface of the first shape, in the world.
   Vector<S> pointB;
   S distance{};  ///< Metres along the normal; negative where they overlap.
 };

@@ -10,7 +10,7 @@ namespace samestep {
 
 /// Kind of thing a shape is to the collision handlers; the user's own numbering. MIS section 8.
 using CollisionType = std::uint32_t;
-/// In a collision handler: any type. It is also the type a new shape has.
+/// Type that stands for any in a collision handler. It is also the type a new shape has.
 inline constexpr CollisionType kWildcardCollisionType = 0;
 
 /// The features a pair touched with last time, so that the next search starts there; 0 starts afresh.

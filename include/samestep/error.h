@@ -49,7 +49,7 @@ enum class Fault : std::uint8_t {
   SpaceLockUnderflow,
   StaticBodyMass,
   UnsolvableCollision,
-  // Beyond the MIS.
+  // The following go beyond the MIS.
   InfiniteMoment,    ///< A moment of inertia that is infinite; see Body::nonRotating.
   MassOutOfRange,    ///< A mass outside [1e-3, 1e6] kg that is not 0.
   MomentOutOfRange,  ///< A moment of inertia outside the supported range that is not 0.

@@ -220,7 +220,7 @@ class HashSet {
   }
 
   std::vector<Index> heads_;  ///< A power of two of bucket heads, as many as bins_ may hold.
-  std::vector<Bin> bins_;     ///< In order of insertion, with gaps.
+  std::vector<Bin> bins_;     ///< Bins in order of insertion, with gaps.
   // not state: follows from the elements
   std::size_t count_ = 0;
   T default_{};

@@ -49,7 +49,7 @@ struct ShapeFilter {
 template <Scalar S>
 struct ShapeMassInfo {
   S mass{};                ///< kg; 0 adds nothing to the body.
-  Vector<S> centroid{};    ///< In the body's frame, metres.
+  Vector<S> centroid{};    ///< Place in the body's frame, metres.
   Scaled<S> unitMoment{};  ///< m^2: the moment about the centroid per kilogram.
   Scaled<S> area{};        ///< m^2, the rounding included.
 

@@ -33,7 +33,7 @@ class Peer {
   Session& session() const { return *session_; }
   /// Makes a frame, with what the player does, unless `quiet`.
   void frame(Time now, bool quiet);
-  /// When the next one is due.
+  /// Time at which the next one is due.
   Time next() const { return next_; }
   void stallUntil(Time time) { next_ = std::max(next_, time); }
   void pauseUntil(Time time) { pausedUntil_ = time; }

@@ -29,7 +29,7 @@ enum class Packet : std::uint8_t {
   want = 8,      ///< Asks for inputs of a dropped player.
   backfill = 9,  ///< Answers with them.
   hashes = 10,   ///< Hashes of certain states.
-  ask = 11,      ///< After a desync: asks for the hashes of the parts of a part of a state.
+  ask = 11,      ///< A peer asks after a desync for the hashes of the parts of a part of a state.
   answer = 12,
 };
 inline constexpr std::uint32_t kProtocol = 1;
@@ -50,7 +50,7 @@ struct Link {
   bool paused = false;
   bool interrupted = false;
   std::uint64_t lastHeard = 0;
-  /// When we last had no need to wait for its next input.
+  /// Time at which we last had no need to wait for its next input.
   std::uint64_t lastInput = 0;
   Tick endSeen = 0;  ///< End of its inputs, at the last look.
   std::uint64_t pausedSince = 0;
@@ -151,7 +151,7 @@ struct Session::Impl {
   void finishLeaving();
   void bad() { ++stats.badPackets; }
 
-  // After a desync.
+  // The following locate a difference after a desync.
   bool canLocate() const;
   Tick keepInterval() const;
   void keepState();

@@ -184,7 +184,7 @@ struct RecordingReader<S>::Scan {
   const RecordingLimits& limits;
   const Interrupt& interrupt;
   std::uint32_t items = 0;
-  std::uint32_t commands = 0;  ///< Since the last step.
+  std::uint32_t commands = 0;  ///< Number since the last step.
 
   /// Takes notice of one item.
   void see(RecordingItem item, std::uint64_t offset) {

@@ -5,7 +5,7 @@
 
 namespace samestep {
 
-/// Not text, spoilt by whatever changes line ends or cuts the eighth bit.
+/// Magic that is not text, spoilt by whatever changes line ends or cuts the eighth bit.
 inline constexpr std::uint8_t kRecordingMagic[8] = {0x89, 'S', 'A', 'M', 'E', '\r', '\n', 0x1a};
 
 // Offsets of the header, and of what is behind it: in version 2 the first world.
@@ -34,7 +34,7 @@ inline constexpr std::uint8_t kPackedBit = 0x80;
 inline constexpr std::uint64_t kSectionHeadBytes = 5;
 inline constexpr std::uint64_t kUnpackedLengthBytes = 4;
 inline constexpr std::uint64_t kChainBytes = 8;
-/// Before the world in a keyframe: its tick and its hash.
+/// Size of what stands before the world in a keyframe: its tick and its hash.
 inline constexpr std::uint64_t kKeyframeHeadBytes = 16;
 inline constexpr std::uint64_t kIndexEntryBytes = 24;
 

@@ -107,7 +107,7 @@ class RecordingWriter {
   std::uint64_t lastCut_ = 0;  ///< The last tick whose items are given.
   std::uint64_t itemsGiven_ = 0;
   Pace pace_;                        ///< Pace of what waits no longer.
-  std::vector<std::uint8_t> items_;  ///< Not given yet.
+  std::vector<std::uint8_t> items_;  ///< Items that are not given yet.
   std::vector<Mark> marks_;          ///< A ring of the ticks that can be gone back to.
   std::vector<Waiting> waiting_;  ///< The first of them are in use, in order; the others keep their memory.
   std::size_t waitingCount_ = 0;

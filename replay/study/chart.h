@@ -11,7 +11,7 @@ namespace samestep {
 /// One setting of a method: how long a step takes and how far its result is off.
 struct ChartPoint {
   int count = 0;            ///< Iterations or substeps.
-  double milliseconds = 0;  ///< Per simulated second, the median of the rounds.
+  double milliseconds = 0;  ///< Time per simulated second, the median of the rounds.
   double fastest = 0;       ///< Time of the fastest round, ms per simulated second.
   double slowest = 0;
   double error = 0;    ///< m; what it is of, Chart::measure says; the median where there are several starts.

@@ -268,7 +268,7 @@ Track Yardstick::trackOf(Run<S>& run) const {
   return track;
 }
 
-/// In the second after the last step.
+/// Measures in the second after the last step.
 template <Scalar S>
 void Yardstick::measureAfter(Run<S>& run, ChartPoint& point) const {
   const Spots before = spotsOf(run.space());

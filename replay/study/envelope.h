@@ -30,7 +30,7 @@ struct Ladder {
   const char* name;     ///< Name on the command line and in the CSV.
   const char* heading;  ///< Heading of its column: what a rung that holds means.
   const char* trial;    ///< Text that says what is done at a rung.
-  const char* failure;  ///< When that has failed.
+  const char* failure;  ///< Text that says when that has failed.
   int top;              ///< The last rung.
   bool (*holds)(const Setting& setting, int rung);
 };

@@ -89,7 +89,7 @@ template <Scalar S>
 /// and after never moved by that.
 template <Scalar S>
 [[gnu::always_inline]] inline RelativePose relativePose(const Frame<S>& a, const Frame<S>& b) {
-  // Toward zero: the mirror image stands in the mirror image of the place.
+  // Units are cut toward zero: the mirror image stands in the mirror image of the place.
   const auto units = [](S x) {
     if constexpr (FixedNumber<S>) {
       return static_cast<std::int32_t>(x.raw() / ((std::int64_t{1} << S::kBits) / kPoseUnits));

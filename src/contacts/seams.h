@@ -27,7 +27,7 @@ struct SeamContact {
   const PlacedShape<S>* still = nullptr;
   /// Normal from the still shape to the moving one, a unit vector.
   Vector<S> normal{};
-  /// On the surface of the still shape, in the world.
+  /// Points on the surface of the still shape, in the world.
   Vector<S> points[kMaxContactsPerPair]{};
   int count = 0;
 };

@@ -11,7 +11,7 @@ namespace samestep {
 template <Scalar S>
 inline constexpr S kTouching = S(0x1p-20);
 
-/// Between the surface points of a contact along the normal, m; negative where the shapes overlap.
+/// Separation of the surface points of a contact along the normal, m; negative where the shapes overlap.
 /// @param normal  the pair's, in the world
 template <Scalar S>
 S separationOf(const Contact<S>& contact, const Vector<S>& normal, const Frame<S>& a, const Frame<S>& b) {

@@ -44,7 +44,7 @@ PolyIntegrals<S> integrate(std::span<const Vector<S>> vertices) {
   return sums;
 }
 
-/// Per kilogram about the centroid.
+/// Moment per kilogram about the centroid.
 template <Scalar S>
 Scaled<S> centralMoment(const PolyIntegrals<S>& sums) {
   return sums.momentAtFirst - squared<S>(sums.centroidX) - squared<S>(sums.centroidY);

@@ -11,7 +11,7 @@ template <Scalar S>
 struct HullEdge {
   MinkowskiPoint<S> from;
   Vector<S> inward;  // Unit normal.
-  S distance{};      // From the origin along `inward`: at most 0 round an origin inside.
+  S distance{};      // It is from the origin along `inward`: at most 0 round an origin inside.
 };
 
 /// The polygon grows by at most one vertex in each iteration.

@@ -235,10 +235,10 @@ GridSegment segment(int x0, int y0, int x1, int y1, int reach) {
 
 TEST(BoxTreeTest, ASegmentPassesBoxesThatItsBoundsHold) {
   BoxTree tree;
-  tree.insert(0, square(900, 0, 50));      // Below the diagonal.
+  tree.insert(0, square(900, 0, 50));      // The box lies below the diagonal.
   tree.insert(1, square(480, 480, 50));    // On it.
-  tree.insert(2, square(0, 900, 50));      // Above.
-  tree.insert(3, square(2000, 2000, 50));  // Beyond its end.
+  tree.insert(2, square(0, 900, 50));      // The box lies above it.
+  tree.insert(3, square(2000, 2000, 50));  // The box lies beyond its end.
 
   EXPECT_EQ(found(tree, segment(0, 0, 1000, 1000, 0)), Keys{1});
   EXPECT_EQ(found(tree, segment(1000, 1000, 0, 0, 600)), (Keys{0, 1, 2}));

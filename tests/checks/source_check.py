@@ -17,6 +17,10 @@ TEXT_SUFFIXES = CODE_SUFFIXES + (".txt", ".cmake", ".py", ".md", ".sh", "")
 MAX_COLUMNS = 110
 # Files in one folder of sources.
 MAX_FILES = 20
+MAX_FUNCTION_LINES = 70
+# Share of the comments that may begin with a fragment; and the number that a small tree may have.
+MAX_FRAGMENTS = 0.02
+FEW_FRAGMENTS = 1
 
 # Where the square root may be taken, the one function of libm that IEEE-754 rounds correctly: the double
 # one, and the estimate behind the exact integer one.
@@ -35,6 +39,9 @@ UNSIZED = (
     r"(?:std::)?(?:size_t|ptrdiff_t|u?int_fast\d+_t|u?intptr_t|wchar_t)|"
     r"(?:unsigned\s+|signed\s+)?long(?:\s+(?:unsigned|signed|int|long))*"
 )
+
+# Public headers that are there for users alone: the specification names these containers as modules.
+USERS_HEADERS = ("array", "hash_set")
 
 
 class Rule:
@@ -94,6 +101,21 @@ NOT_FOR_CLIENTS = re.compile(r"#\s*include\s*<(string|string_view|algorithm|opti
 LEFTOVER = re.compile(r"\b(?:FIX" + r"ME|TO" + r"DO|XX" + r"X|HA" + r"CK)\b")
 SKIPPED_TEST = re.compile(r"\bGTEST_" + r"SKIP\b|\bDISA" + r"BLED_")
 MACHINE_PATH = re.compile(r"(?<![\w.}\)])/(?:work|root|home|Users|tmp|mnt|scratch)/\w")
+# Words that begin a part of a sentence, where a comment should name its subject.
+FRAGMENT = re.compile(
+    r"(?:What|Of|Whether|How|Which|Who|Whose|Whoever|Whatever|Why|The same|Asked|Called|Told|Thrown|Seen|Also|Nor|"
+    r"Those (?:that|of|who|which|in|up))\b")
+# These begin a sentence, too; it then has a word of the second kind.
+PREPOSITION = re.compile(
+    r"(?:Where|As|By|For|From|To|With|Without|In|At|On|Out|Against|Along|Up|Between|Behind|Beyond|While|Among|Within|"
+    r"Before|After|Until|Since|Unless|Like|Over|Under|Not|Only|When|If|Below|Above|Beside|Across|Through|Per)\b")
+VERB = re.compile(r"\b(?:is|are|was|were|has|have|had|does|do|did|can|may|must|shall|will|would|could|should|needs?|"
+                  r"cannot|it|they|there|he|who|that|which)\b|n't\b|\bcounts?\b|\bstands?\b|\bcoincide\b|\btakes?\b")
+# A clause with one of these needs another clause, behind a comma.
+SUBORDINATE = re.compile(r"(?:Where|As|While|When|If|Unless|Until|Since)\b[^,:]*$")
+NO_PROSE = re.compile(r"SPDX|namespace|extern|@|MIS|clang-format|\W*$")
+# What the formatter makes of a line that it misreads, and several references in one declaration.
+MANGLED = re.compile(r"[\w)>]\)&&\w|\w&\w+ = .*, &\w+ =")
 INCLUDE = re.compile(r'#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -200,9 +222,12 @@ class Check:
             if path.suffix == ".h":
                 self.check_header(path, code, comments)
             self.check_includes(path, code)
+            self.check_shape(path, code)
         self.check_cycles()
         self.check_client()
         self.check_folders()
+        self.check_dead_headers()
+        self.check_comments()
         for path in self.files(ENGINE_FOLDERS + OTHER_FOLDERS, TEXT_SUFFIXES):
             self.check_leftovers(path, self.read(path))
         for path in sorted(self.root.iterdir()):
@@ -314,6 +339,40 @@ class Check:
             if count > MAX_FILES:
                 self.report(folder, 0, "folder", f"{count} files, {MAX_FILES} at most; give a subject of its own a folder")
 
+    def check_shape(self, path, code):
+        for number, line in enumerate(code):
+            if MANGLED.search(line):
+                self.report(path, number, "mangled", "the formatter misread this; write one declaration a line, or "
+                            "parentheses around what is compared")
+        for start, end in functions(code):
+            if end - start + 1 > MAX_FUNCTION_LINES:
+                self.report(path, start, "long-function", f"{end - start + 1} lines, {MAX_FUNCTION_LINES} at most; "
+                            "make it a list of named steps")
+
+    def check_dead_headers(self):
+        """Public headers that no other file of the product includes are interface without use."""
+        used = {target for path, found in self.includes.items() for _, target in found
+                if path.stem.split("_test")[0] != target.stem or path.suffix == ".h"}
+        for path in self.files(("include",), (".h",)):
+            own = list((self.root / "src").rglob(path.stem + "*.cpp"))
+            if path not in used and not own and path.stem not in USERS_HEADERS:
+                self.report(path, 0, "dead-header", "no file of the product includes it; remove it, or name it in "
+                            "USERS_HEADERS with the reason")
+
+    def check_comments(self):
+        """Comments that begin in the middle of a sentence, told of where they are more than a few."""
+        found, blocks = [], 0
+        for path in self.files(ENGINE_FOLDERS + OTHER_FOLDERS, CODE_SUFFIXES):
+            for number, text in comment_blocks(self.read(path)):
+                blocks += not NO_PROSE.match(text)
+                if is_fragment(text):
+                    found.append((path, number, text))
+        if len(found) <= max(FEW_FRAGMENTS, MAX_FRAGMENTS * blocks):
+            return
+        for path, number, text in found:
+            self.report(path, number, "fragment", f"'{text[:40]}...' begins in the middle of a sentence; name the thing "
+                        "by the field's word, then the reason")
+
     def check_leftovers(self, path, text):
         is_code = path.suffix in CODE_SUFFIXES
         lines = text.split("\n")
@@ -327,6 +386,68 @@ class Check:
                 self.report(path, number, "long-line", f"{len(line)} columns, {MAX_COLUMNS} at most")
             if MACHINE_PATH.search(line):
                 self.report(path, number, "machine-path", "a path of one machine; make it relative, or a mktemp")
+
+
+def comment_blocks(text):
+    """(line, text) of each run of line comments, and of each comment behind code."""
+    first, parts = 0, []
+    for number, line in enumerate(text.split("\n") + [""]):
+        whole = re.match(r"\s*//[/!]?<?\s?(.*)$", line)
+        if whole:
+            if not parts:
+                first = number
+            parts.append(whole.group(1))
+            continue
+        if parts:
+            yield first, " ".join(parts)
+            parts = []
+        behind = re.search(r"[;,{}]\s+///?<?\s?(.*)$", line)
+        if behind:
+            yield number, behind.group(1)
+
+
+def is_fragment(text):
+    """Whether a comment begins in the middle of a sentence."""
+    if NO_PROSE.match(text):
+        return False
+    sentence = re.match(r".*?[.](?=\s|$)|.*", text, re.S).group()
+    return bool(FRAGMENT.match(text) or SUBORDINATE.match(sentence) or
+                (PREPOSITION.match(text) and not VERB.search(sentence)))
+
+
+def functions(code):
+    """(first line, last line) of each function with a body that is no part of another."""
+    scopes = []  # (kind, line) with kind "space" (namespace or class), "function" or "other"
+    pending, start = "", 0
+    for number, line in enumerate(code):
+        if line.lstrip().startswith("#"):
+            continue
+        for character in line + "\n":
+            if not pending.strip():
+                start = number
+            if character == "{":
+                scopes.append((scope_of(pending, scopes), start))
+                pending = ""
+            elif character == "}":
+                kind, first = scopes.pop() if scopes else ("other", number)
+                if kind == "function":
+                    yield first, number
+                pending = ""
+            elif character == ";" or (character == ":" and re.fullmatch(r"\s*(?:public|private|protected)\s*", pending)):
+                pending = ""
+            else:
+                pending += character
+
+
+def scope_of(declaration, scopes):
+    """What a brace behind this text opens, within the scopes around it, for functions()."""
+    if any(outer != "space" for outer, _ in scopes):
+        return "other"
+    text = strip_template(declaration)
+    if re.search(r"\b(?:namespace|class|struct|union|enum|extern)\b", text) and ")" not in text:
+        return "space"
+    is_function = ")" in text and "=" not in text.split("(")[0].replace("operator=", "")
+    return "function" if is_function else "other"
 
 
 def permitted(marker, code, comments, number):

@@ -101,6 +101,58 @@ class SourceCheck(unittest.TestCase):
         self.assertEqual(len(found), 1)
         self.assertRegex(found[0], r"^src/dynamics/body\.cpp:3: \[random\] .*mt19937_64")
 
+    def test_function_of_too_many_lines(self):
+        body = "  work();\n" * 68
+        self.assertEqual(problems({SOURCE: f"void Body::move() {{\n{body}}}\n"}), [])
+        found = problems({SOURCE: f"namespace samestep {{\nvoid Body::move() {{\n{body}  work();\n}}\n}}\n"})
+        self.assertEqual(len(found), 1)
+        self.assertRegex(found[0], r"body\.cpp:2: \[long-function\] 71 lines")
+
+    def test_a_long_function_of_a_class_counts_and_a_lambda_belongs_to_its_function(self):
+        work = "    work();\n" * 70
+        self.assertRegex("".join(problems({HEADER: header(f"class Body {{\n  void move() {{\n{work}  }}\n}};\n")})),
+                         r"body\.h:3: \[long-function\] 72 lines")
+        found = problems({SOURCE: f"void move() {{\n  const auto go = [] {{\n{work}  }};\n}}\n"})
+        self.assertEqual([line.split("]")[0] for line in found], ["src/dynamics/body.cpp:1: [long-function"])
+
+    def test_a_class_or_a_table_may_have_many_lines(self):
+        rows = "  1,\n" * 100
+        self.assertEqual(problems({SOURCE: f"constexpr int kTable[] = {{\n{rows}}};\n"}), [])
+        members = "  void f();\n" * 100
+        self.assertEqual(problems({HEADER: header(f"class Body {{\n{members}}};\n")}), [])
+
+    def test_header_that_nothing_uses(self):
+        self.assertRegex("".join(problems({"include/samestep/transform.h": header("")})), r"\[dead-header\]")
+        self.assertEqual(problems({"include/samestep/transform.h": header(""),
+                                   SOURCE: "#include <samestep/transform.h>\n"}), [])
+
+    def test_what_the_formatter_mangles(self):
+        for bad in ("bool a = (b < kMost)&&in(c);\n", "bool a = in(b, kMax<S>)&&in(c);\n", "const X&a = b, &c = d;\n"):
+            self.assertRegex("".join(problems({SOURCE: bad})), r"\[mangled\]", bad)
+        self.assertEqual(problems({SOURCE: "bool a = b < kMost && in(c);\nvoid take(S&& from, S& to);\n"}), [])
+
+    def test_comments_that_begin_in_the_middle_of_a_sentence(self):
+        for text in ("What a block needs once in a while.", "Of a substep.", "Whether the body may turn.", "As they are.",
+                     "The same for bits that are known.", "How far along.", "Who is told.", "From the centre, m.",
+                     "With springs, before anything moves."):
+            self.assertTrue(source_check.is_fragment(text), text)
+        for text in ("Cold data of a block: what it needs once in a while.", "True if the body may turn.",
+                     "In a step that finds nothing new there is nothing to do.", "Where a point touches, it may roll.",
+                     "SPDX-License-Identifier: MIT", "namespace samestep", "@param way  of A against B, m"):
+            self.assertFalse(source_check.is_fragment(text), text)
+
+    def test_fragments_are_told_where_they_are_more_than_a_few(self):
+        one = "/// Of the body, kg.\nint a;\n\nint b;  ///< What is left.\n"
+        found = problems({SOURCE: one})
+        self.assertRegex("".join(found), r"body\.cpp:1: \[fragment\] 'Of the body, kg\.")
+        self.assertRegex("".join(found), r"body\.cpp:4: \[fragment\] 'What is left\.")
+        whole = "/// Mass of the body, kg.\nint a;\n" * 100
+        self.assertEqual(problems({SOURCE: one + whole}), [])
+
+    def test_a_comment_block_is_all_its_lines(self):
+        self.assertEqual(list(source_check.comment_blocks("// Mass\n// of a body.\nint a;  ///< kg.\n")),
+                         [(0, "Mass of a body."), (2, "kg.")])
+
     def test_comments_and_strings_are_not_code(self):
         quiet = ('/* std::sin(x)\n std::cos(x) */\nauto a = "std::sort(x)";\nauto b = R"(rand())";\n'
                  "int c = 1'000;  // std::sqrt(2)\nint d = 2'000;\n")
@@ -132,7 +184,8 @@ class SourceCheck(unittest.TestCase):
 
     def test_public_header_without_a_source_is_named_in_the_table(self):
         self.assertRegex("".join(problems({"include/samestep/nowhere.h": header("")})), r"\[layer\]")
-        self.assertEqual(problems({"include/samestep/vector.h": header("")}), [])
+        found = problems({"include/samestep/vector.h": header("")})
+        self.assertFalse(any("[layer]" in line for line in found), found)
 
     def test_name_without_a_folder_is_stale(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -297,7 +297,7 @@ TYPED_TEST(ArbiterTest, ChangedContactPointsAreWhatIsSolved) {
   this->step(
       [](Arbiter<S>& arbiter, Space<S>&, void*) {
         ContactPointSet<S> set = arbiter.contactPointSet();
-        set.normal = {S(0), S(1)};  // Across the approach: nothing to stop.
+        set.normal = {S(0), S(1)};  // This is across the approach: nothing to stop.
         arbiter.setContactPointSet(set);
         return true;
       },

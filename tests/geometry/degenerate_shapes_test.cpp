@@ -33,7 +33,7 @@ class DegenerateShapesTest : public ::testing::Test {
   static S depth(const CollisionInfo<S>& info, int i) {
     return dot(info.points[i].pointB - info.points[i].pointA, info.normal);
   }
-  /// At least one point, and its two places lie opposite each other, along the normal.
+  /// Expects at least one point, and that its two places lie opposite each other, along the normal.
   static void expectOpposite(const CollisionInfo<S>& info, double tolerance = 1e-5) {
     EXPECT_GE(info.count, 1);
     for (int i = 0; i < info.count; ++i) {

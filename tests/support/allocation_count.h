@@ -27,7 +27,7 @@ inline void* countedMemory(std::size_t size) noexcept {
 
 }  // namespace samestep
 
-// Not inlined, or gcc takes malloc and operator delete for a mismatched couple.
+// Inlined, it would have gcc take malloc and operator delete for a mismatched couple.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   if (void* memory = samestep::countedMemory(size)) return memory;
   throw std::bad_alloc();

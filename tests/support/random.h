@@ -19,11 +19,11 @@ class Random {
     return z ^ (z >> 31);
   }
 
-  /// In [0, count). @pre count > 0
+  /// Number in [0, count). @pre count > 0
   std::uint32_t below(std::uint32_t count) {
     return static_cast<std::uint32_t>((next() >> 32) * count >> 32);
   }
-  /// In [low, high].
+  /// Number in [low, high].
   int between(int low, int high) {
     return low + static_cast<int>(below(static_cast<std::uint32_t>(high - low + 1)));
   }

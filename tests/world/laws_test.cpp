@@ -51,7 +51,7 @@ class LawsTest : public ::testing::Test {
     }
     return id;
   }
-  /// Within the slop of a wall: touching, and not pushed.
+  /// Place within the slop of a wall: touching, and not pushed.
   static S resting() { return S(1) - ratio<S>(1, 256); }
 
   /// J, with the part that a step of the method shifts between motion and height: exact in free fall.

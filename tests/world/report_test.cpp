@@ -138,7 +138,7 @@ void expectMomentumTold(Test& test, Space<S>& space, const Method& method, const
                         int steps) {
   double most = 0;
   for (int i = 0; i < steps; ++i) {
-    std::map<std::uint32_t, std::pair<Vector<S>, Vector<S>>> velocity;  // Before, and told.
+    std::map<std::uint32_t, std::pair<Vector<S>, Vector<S>>> velocity;  // Velocities before and as told.
     for (const BodyId id : bodies) velocity[id.index].first = space.body(id).velocity();
     const S dt = i % 7 == 3 ? kTick<S> * ratio<S>(1, 2) : kTick<S>;
     space.step(dt);

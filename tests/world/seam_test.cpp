@@ -45,7 +45,7 @@ class SeamTest : public ::testing::Test {
   static void addFloor(Space<S>& space, Ground ground, int from, int to, S gap = S(0), S step = S(0)) {
     std::vector<int> order;
     for (int i = from; i < to; ++i) order.push_back(i);
-    // In no order.
+    // This leaves them in no order.
     for (std::size_t i = 0; i + 3 < order.size(); i += 2) std::swap(order[i], order[i + 3]);
     for (const int i : order) {
       const S top = i % 2 == 0 ? S(0) : step;
@@ -167,7 +167,7 @@ TYPED_TEST(SeamTest, AWalkerArrivesOnBodiesThatMoveAlike) {
   }
 }
 
-// On what moves itself: a heavy plank of boxes, free in space.
+// The floor moves itself: a heavy plank of boxes, free in space.
 TYPED_TEST(SeamTest, ABallAndAWalkerKeepTheirSpeedOnABodyOfBoxes) {
   using S = TypeParam;
   for (const Solving& solving : kAll) {

@@ -562,7 +562,7 @@ TYPED_TEST(HandlersTest, PairsAreToldOfInTheOrderOfTheirShapes) {
   this->disc(S(2), 1, 1);
   this->disc(S(1), 1, 2);
   this->world_.removeWithShapes(bodyOf(this->world_, first));
-  this->disc(ratio<S>(3, 2), 1, 0);  // In the freed slot.
+  this->disc(ratio<S>(3, 2), 1, 0);  // It takes the freed slot.
   EXPECT_THAT(this->step(), ElementsAre("d.begin(0,1)", "d.preSolve(0,1)", "d.begin(0,2)", "d.preSolve(0,2)",
                                         "d.begin(1,2)", "d.preSolve(1,2)", "d.postSolve(0,1)",
                                         "d.postSolve(0,2)", "d.postSolve(1,2)"));

@@ -89,7 +89,7 @@ class BasicFixed {
   explicit constexpr operator double() const {
     return static_cast<double>(raw_) / static_cast<double>(std::uint64_t{1} << kFractionBits);
   }
-  /// Toward zero, modulo 2^32.
+  /// Rounds toward zero, modulo 2^32.
   explicit constexpr operator int() const {
     const std::int64_t wide = raw_;
     const auto size = wide < 0 ? 0 - static_cast<std::uint64_t>(wide) : static_cast<std::uint64_t>(wide);

@@ -36,7 +36,7 @@ struct MatchKey {
 /// Number of datagrams dropped since the start, by reason. Drops are silent on the wire.
 struct SealCounters {
   std::uint64_t malformed = 0;  ///< A length or kind that no peer sends.
-  std::uint64_t forged = 0;     ///< Not made with the keys of the match or of the peer.
+  std::uint64_t forged = 0;     ///< Datagrams not made with the match's or peer's keys.
   std::uint64_t strangers = 0;  ///< Datagrams made with the match's key by a peer that was not let in.
   std::uint64_t replayed = 0;   ///< Received before, or too old to tell.
   std::uint64_t unknown = 0;    ///< Datagrams for a connection that does not exist (any more).

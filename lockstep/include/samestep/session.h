@@ -56,7 +56,7 @@ struct SessionSettings {
   std::uint32_t dropAfter = 3'000'000;
   /// A pause may last for so long; then its peer is dropped like one that makes no inputs.
   std::uint32_t pausedAtMost = 300'000'000;
-  /// When two leave at about the same time, one waits for so long to hear from the other.
+  /// Time to wait, when two leave at about the same time, to hear from the other.
   std::uint32_t goneAfter = 1'000'000;
   /// A match that cannot go on, for most of its players are gone, ends after so long.
   std::uint32_t endAfter = 15'000'000;
@@ -104,7 +104,7 @@ struct SessionEvent {
   std::uint64_t remote = 0;
 };
 
-/// In what the states of two peers differ.
+/// Difference of the states of two peers.
 struct DesyncReport {
   /// The first state that is known to differ, after so many steps: hashes are compared at intervals.
   Tick first = 0;
@@ -120,8 +120,8 @@ struct DesyncReport {
   std::uint16_t minority = 0;
 };
 
-/// In a line: "body 7, center.x after 330 ticks: 1 (0x100000000) here, 2 (0x200000000) at peer 1; peer 1
-/// differs from most".
+/// Report in a line: "body 7, center.x after 330 ticks: 1 (0x100000000) here, 2 (0x200000000) at peer 1; peer
+/// 1 differs from most".
 std::string desyncText(const DesyncReport& report);
 
 /// In what two peers differ that want to play together.
@@ -132,7 +132,7 @@ enum class Frame : std::uint8_t {
   advanced,  ///< A step was made.
   waiting,   ///< The inputs of others are waited for: show the last one again.
   paused,
-  idle,  ///< Not running.
+  idle,  ///< The session does not run.
 };
 
 struct SessionStats {
@@ -144,7 +144,7 @@ struct SessionStats {
   std::uint64_t sentBytes = 0;  ///< Payload of datagrams.
   std::uint64_t sentPackets = 0;
   std::uint64_t badPackets = 0;  ///< Dropped: malformed, of another match, of nobody known.
-  std::uint64_t lostEvents = 0;  ///< Not fetched in time.
+  std::uint64_t lostEvents = 0;  ///< Number not fetched in time.
 };
 
 /// A networked match of 2 to 16 players without a host: each peer runs the whole game, and only inputs

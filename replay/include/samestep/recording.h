@@ -42,7 +42,7 @@ struct RecordingLimits : WorldLimits {
   /// Bytes of the whole recording, and of what is packed in it when it is unpacked. Some hours of a match of
   /// a dozen players are a tenth of it.
   std::uint64_t bytes = std::uint64_t{1} << 30;
-  /// Between two steps.
+  /// Limit of commands between two steps.
   std::uint32_t commandsPerTick = 1u << 16;
   /// Work as Space::work counts it, for all of a replay: unlike a limit of seconds, no recording meets it on
   /// one machine and not on another.
@@ -110,10 +110,10 @@ class RecordingReader {
   std::uint64_t ticks() const { return ticks_; }
   /// True if nothing of it is missing; always so where it had to be whole.
   bool isWhole() const { return whole_; }
-  /// Before the first step.
+  /// World before the first step.
   const WorldState<S>& initialWorld() const { return world_; }
   std::uint64_t initialHash() const { return initialHash_; }
-  /// In their order, the first world first.
+  /// Keyframes in their order, the first world first.
   std::span<const Keyframe> keyframes() const { return keyframes_; }
   /// Number of claims.
   std::uint64_t claims() const { return claims_; }

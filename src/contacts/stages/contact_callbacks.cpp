@@ -28,7 +28,7 @@ const CollisionHandler<S>* ContactCallbacks<S>::boundHandler(const Context& cont
   return context.wiring.bound.find(context.wiring.handlers, kind, typeA, typeB);
 }
 
-/// Before one more call of a handler in a row of them.
+/// Notes one more call of a handler, before it, in a row of them.
 template <Scalar S>
 void ContactCallbacks<S>::payForCall(Context& context, std::uint32_t& called) {
   if (++called % Budget::kObjectsAtOnce == 0) context.pay(Budget::kPerCall * Budget::kObjectsAtOnce);

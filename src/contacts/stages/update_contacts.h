@@ -36,7 +36,7 @@ class UpdateContacts {
     bool now, surfacesKnown, compounds;
   };
 
-  /// When shapes that have a contact meet.
+  /// Time of the meeting of shapes that have a contact.
   enum class Meeting { notAsked, now, later, none };
 
   void collidePairs(StepContext<S>& step, const std::uint8_t* overlapping);

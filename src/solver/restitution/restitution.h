@@ -14,7 +14,7 @@ template <Scalar S>
 struct BounceBody {
   S before[3]{};    ///< x, y, angular when the step began: m/s, rad/s.
   S velocity[3]{};  ///< After contacts that do not bounce.
-  S moved[3]{};     ///< In the step: m, rad.
+  S moved[3]{};     ///< Motion in the step: m, rad.
   S pushed[3]{};    ///< Velocity that forces give in a substep: m/s, rad/s.
   S perSecond{};    ///< Substeps.
   S mass{};         ///< kg; 0 of what contacts leave as it is.

@@ -30,7 +30,7 @@ class Finding {
     if (found) [[unlikely]]
       found_.store(1, std::memory_order_relaxed);
   }
-  /// After the work.
+  /// True if anything was found; asked after the work.
   explicit operator bool() const { return found_.load(std::memory_order_relaxed) != 0; }
 
  private:
