@@ -7,6 +7,7 @@
 #include <samestep/make_room.h>
 
 #include "base/budget.h"
+#include "broad_phase/grid_box.h"
 
 namespace samestep {
 
@@ -17,39 +18,6 @@ constexpr std::size_t kFoundAtOnce = 1 << 16;
 
 constexpr std::uint8_t kMovedHere = 1;
 constexpr std::uint8_t kMovedInStatic = 2;
-
-template <Scalar S>
-const S kGridScale = S(1 << kGridBits);
-/// The last whole metre on the grid.
-template <Scalar S>
-const S kGridEdge = S(kGridLimit >> kGridBits);
-
-/// Grid line below x; what is no number counts as -infinity here and as +infinity in gridCeil: its box
-/// overlaps everything.
-template <Scalar S>
-std::int32_t gridFloor(S x) {
-  const S edge = kGridEdge<S>;
-  const S clamped = x >= -edge ? min(x, edge) : -edge;
-  const S scaled = clamped * kGridScale<S>;
-  const int towardZero = static_cast<int>(scaled);
-  return towardZero - (S(towardZero) > scaled ? 1 : 0);
-}
-
-template <Scalar S>
-std::int32_t gridCeil(S x) {
-  return -gridFloor(-x);
-}
-
-template <Scalar S>
-GridBox gridBox(const BB<S>& box) {
-  return {gridFloor(box.left), gridFloor(box.bottom), gridCeil(box.right), gridCeil(box.top)};
-}
-
-template <Scalar S>
-bool onGrid(const Vector<S>& v) {
-  const auto inside = [](S x) { return -kGridEdge<S> <= x && x <= kGridEdge<S>; };
-  return inside(v.x) && inside(v.y);
-}
 
 /// Holds no box.
 template <Scalar S>
