@@ -24,7 +24,7 @@ FEW_FRAGMENTS = 1
 
 # Where the square root may be taken, the one function of libm that IEEE-754 rounds correctly: the double
 # one, and the estimate behind the exact integer one.
-SQRT_FILES = ("include/samestep/math.h", "fixed/include/samestep/way.h")
+SQRT_FILES = ("include/samestep/math.h", "fixed/include/samestep/way_root.h")
 
 LIBM = (
     "a?(?:sin|cos|tan)h?|atan2|exp|exp2|expm1|log|log2|log10|log1p|logb|ilogb|pow|cbrt|hypot|fma|lerp|"

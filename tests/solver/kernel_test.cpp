@@ -12,7 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include "solver/kernels/generic/integer_lanes.h"
+#include "solver/kernels/generic/coefficient_lanes.h"
+#include "solver/kernels/generic/integer_vectors.h"
 #include "solver/kernels/generic/scalar_lanes.h"
 #include "solver/kernels/generic/soft_passes.h"
 #include "solver/kernels/kernels.h"

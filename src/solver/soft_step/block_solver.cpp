@@ -9,7 +9,8 @@
 
 #include "base/require_ieee.h"
 #include "contacts/contact_row.h"
-#include "solver/kernels/generic/integer_lanes.h"
+#include "solver/kernels/generic/coefficient_lanes.h"
+#include "solver/kernels/generic/integer_vectors.h"
 #include "solver/kernels/generic/scalar_lanes.h"
 #include "solver/kernels/generic/soft_passes.h"
 #include "solver/kernels/kernels.h"

@@ -3,8 +3,11 @@
 
 #ifdef __aarch64__
 #include "solver/kernels/arm64/integers_neon.h"
+#include "solver/kernels/generic/coefficient_lanes.h"
+#include "solver/kernels/generic/fast_lanes.h"
 #include "solver/kernels/generic/soft_passes.h"
 #include "solver/kernels/generic/two_lanes.h"
+#include "solver/kernels/generic/wide_lanes.h"
 
 namespace samestep::kernels {
 

@@ -192,7 +192,7 @@ struct ScalarLanes {
   }
 };
 
-/// The wide kernel of integer_lanes.h, one number at a time in any fixed-point scalar: one that checks
+/// The wide kernel of wide_lanes.h, one number at a time in any fixed-point scalar: one that checks
 /// reports what does not fit.
 template <FixedNumber S>
 struct WideScalarLanes {

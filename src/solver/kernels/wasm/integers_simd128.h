@@ -3,7 +3,7 @@
 
 #include <wasm_simd128.h>
 
-#include "solver/kernels/generic/integer_lanes.h"
+#include "solver/kernels/generic/integer_vectors.h"
 
 namespace samestep {
 namespace {

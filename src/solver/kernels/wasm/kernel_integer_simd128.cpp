@@ -2,8 +2,11 @@
 #include "solver/kernels/kernels.h"
 
 #ifdef __wasm_simd128__
+#include "solver/kernels/generic/coefficient_lanes.h"
+#include "solver/kernels/generic/fast_lanes.h"
 #include "solver/kernels/generic/soft_passes.h"
 #include "solver/kernels/generic/two_lanes.h"
+#include "solver/kernels/generic/wide_lanes.h"
 #include "solver/kernels/wasm/integers_simd128.h"
 
 namespace samestep::kernels {

@@ -3,7 +3,7 @@
 
 #include "solver/kernels/x86/avx512_intrinsics.h"
 
-#include "solver/kernels/generic/integer_lanes.h"
+#include "solver/kernels/generic/integer_vectors.h"
 
 namespace samestep {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <immintrin.h>
 
-#include "solver/kernels/generic/integer_lanes.h"
+#include "solver/kernels/generic/integer_vectors.h"
 
 namespace samestep {
 namespace {

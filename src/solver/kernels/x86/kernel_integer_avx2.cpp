@@ -3,8 +3,11 @@
 #include "solver/kernels/kernels.h"
 
 #ifdef __AVX2__
+#include "solver/kernels/generic/coefficient_lanes.h"
+#include "solver/kernels/generic/fast_lanes.h"
 #include "solver/kernels/generic/soft_passes.h"
 #include "solver/kernels/generic/two_lanes.h"
+#include "solver/kernels/generic/wide_lanes.h"
 #include "solver/kernels/x86/integers_avx2.h"
 #include "solver/kernels/x86/integers_sse42.h"
 

@@ -3,7 +3,10 @@
 #include "solver/kernels/kernels.h"
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512BW__) && defined(__AVX512VL__)
+#include "solver/kernels/generic/coefficient_lanes.h"
+#include "solver/kernels/generic/fast_lanes.h"
 #include "solver/kernels/generic/soft_passes.h"
+#include "solver/kernels/generic/wide_lanes.h"
 #include "solver/kernels/x86/avx512_intrinsics.h"
 #include "solver/kernels/x86/integers_avx2.h"
 #include "solver/kernels/x86/integers_avx512.h"
