@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "transport/handshake.h"
-#include "transport/replay_window.h"
+#include "transport/peer_table.h"
 
 namespace samestep {
 
@@ -21,8 +21,6 @@ static_assert(kHead + kTag == SealedTransport::kSealBytes);
 
 constexpr std::uint64_t kCallAgain = 250'000;        // us
 constexpr std::uint64_t kSilenceOfPeer = 3'000'000;  // us, after which a peer is called anew.
-constexpr std::uint32_t kConnectionsOfPeer = 4;
-constexpr std::uint32_t kNone = 0xffffffffu;
 /// No call looks at more datagrams than these: whoever floods a peer shall not stop it.
 constexpr int kMostDropped = 256;
 
@@ -32,49 +30,9 @@ std::array<std::uint8_t, 12> nonceOf(std::uint64_t number) {
   return nonce;
 }
 
-/// Keys that two peers agreed on, or, while there are none, the place for those of a call.
-struct Connection {
-  enum class State : std::uint8_t { none, calling, unconfirmed, confirmed };
-  State state = State::none;
-  std::uint8_t use = 0;  ///< Counts who had this place, so that late datagrams do not reach the next one.
-  std::uint16_t peerNumber = 0;
-  bool heard = false;  ///< The peer has sent something sealed.
-  std::uint64_t sent = 0;
-  std::uint64_t order = 0;  ///< Number of connections that came into being before it.
-  ConnectionKeys keys{};
-  ReplayWindow window{};
-  PublicKey callerFresh{};
-  std::array<std::uint8_t, kAnswerBytes> answer{};
-};
-
-struct Peer {
-  Peer() = default;
-  Peer(const Peer&) = delete;
-  Peer& operator=(const Peer&) = delete;
-
-  void reset() {
-    used = callable = false;
-    key = {};
-    below = 0;
-    current = calling = kNone;
-    nextCall = lastHeard = 0;
-    call.reset();
-  }
-
-  bool used = false;
-  bool callable = false;
-  PublicKey key{};
-  Address below = 0;
-  std::uint32_t current = kNone;  ///< The connection that is sent on.
-  std::uint32_t calling = kNone;
-  std::uint64_t nextCall = 0;
-  std::uint64_t lastHeard = 0;
-  std::optional<Call> call;
-};
-
 }  // namespace
 
-struct SealedTransport::Impl {
+struct SealedTransport::Impl : PeerTable {
   Impl(const Transport& carrier, const KeyPair& self, const MatchKey& secret)
       : below(carrier), own(self), match(secret) {}
 
@@ -84,73 +42,15 @@ struct SealedTransport::Impl {
   Admission admission = nullptr;
   void* admissionData = nullptr;
   std::uint64_t now = 0;
-  std::uint64_t made = 0;
   SealCounters counters{};
-  std::array<Peer, kMaxPeers> peers{};
-  std::array<Connection, kMaxPeers * kConnectionsOfPeer> connections{};
   std::array<std::uint8_t, kMaxDatagram> arrived{};
 
-  std::uint16_t numberOf(std::uint32_t connection) const {
-    return static_cast<std::uint16_t>(connection | static_cast<std::uint32_t>(connections[connection].use)
-                                                       << 8);
-  }
-
-  Peer* find(Address name) {
-    return name >= 1 && name <= kMaxPeers && peers[name - 1].used ? &peers[name - 1] : nullptr;
-  }
-
-  Peer* find(const PublicKey& key) {
-    const auto found = std::find_if(peers.begin(), peers.end(),
-                                    [&](const Peer& peer) { return peer.used && peer.key == key; });
-    return found == peers.end() ? nullptr : &*found;
-  }
-
-  std::uint32_t indexOf(const Peer& peer) const { return static_cast<std::uint32_t>(&peer - peers.data()); }
-
-  Peer* letIn(const PublicKey& key) {
-    if (Peer* known = find(key)) return known;
-    const auto free = std::find_if(peers.begin(), peers.end(), [](const Peer& peer) { return !peer.used; });
-    if (free == peers.end()) return nullptr;
-    free->used = true;
-    free->key = key;
-    return &*free;
-  }
-
-  void remove(Peer& peer) {
-    const std::uint32_t first = indexOf(peer) * kConnectionsOfPeer;
-    for (std::uint32_t i = first; i < first + kConnectionsOfPeer; ++i) occupy(i, Connection::State::none);
-    peer.reset();
-  }
-
-  /// Empties a place and gives it a new number.
-  Connection& occupy(std::uint32_t index, Connection::State state) {
-    const std::uint8_t use = static_cast<std::uint8_t>(connections[index].use + 1);
-    sodium_memzero(&connections[index].keys, sizeof(ConnectionKeys));
-    connections[index] = Connection();
-    connections[index].use = use;
-    connections[index].state = state;
-    connections[index].order = ++made;
-    return connections[index];
-  }
-
-  /// A place among the peer's: an empty one, or that of the oldest connection that is not the current one.
-  std::uint32_t placeFor(const Peer& peer) const {
-    const std::uint32_t first = indexOf(peer) * kConnectionsOfPeer;
-    std::uint32_t best = kNone;
-    for (std::uint32_t i = first; i < first + kConnectionsOfPeer; ++i) {
-      if (i == peer.current || i == peer.calling) continue;
-      if (connections[i].state == Connection::State::none) return i;
-      if (best == kNone || connections[i].order < connections[best].order) best = i;
-    }
-    return best;
-  }
-
-  void callIfNeeded(Peer& peer) {
-    const bool silent = peer.current == kNone || now - peer.lastHeard > kSilenceOfPeer;
+  void callIfNeeded(SealedPeer& peer) {
+    const bool silent = peer.current == kNoConnection || now - peer.lastHeard > kSilenceOfPeer;
     if (!peer.used || !peer.callable || !silent || now < peer.nextCall) return;
     if (!peer.call) {
       peer.calling = placeFor(peer);
-      occupy(peer.calling, Connection::State::calling);
+      occupy(peer.calling, SealedConnection::State::calling);
       peer.call.emplace(own, peer.key, match, numberOf(peer.calling));
     }
     peer.nextCall = now + kCallAgain;
@@ -158,14 +58,14 @@ struct SealedTransport::Impl {
   }
 
   /// The peer called knows that its answer arrived by the first sealed datagram.
-  void confirmAgain(Peer& peer) {
-    if (peer.current == kNone || connections[peer.current].heard || now < peer.nextCall) return;
+  void confirmAgain(SealedPeer& peer) {
+    if (peer.current == kNoConnection || connections[peer.current].heard || now < peer.nextCall) return;
     peer.nextCall = now + kCallAgain;
     seal(peer, {});
   }
 
-  void seal(Peer& peer, Bytes bytes) {
-    Connection& connection = connections[peer.current];
+  void seal(SealedPeer& peer, Bytes bytes) {
+    SealedConnection& connection = connections[peer.current];
     const std::uint64_t number = connection.sent++;
     std::array<std::uint8_t, kMaxDatagram> out;
     out[0] = static_cast<std::uint8_t>(SealedKind::sealed);
@@ -186,14 +86,14 @@ struct SealedTransport::Impl {
       ++counters.forged;
       return;
     }
-    Peer* peer = find(caller->key);
+    SealedPeer* peer = find(caller->key);
     if (peer == nullptr && admission != nullptr && admission(caller->key, admissionData))
       peer = letIn(caller->key);
     if (peer == nullptr) {
       ++counters.strangers;
       return;
     }
-    if (const Connection* known = madeFor(*peer, caller->fresh)) {
+    if (const SealedConnection* known = madeFor(*peer, caller->fresh)) {
       below.send(from, known->answer, below.data);
       return;
     }
@@ -201,22 +101,22 @@ struct SealedTransport::Impl {
   }
 
   /// The connection that a hello has led to before.
-  const Connection* madeFor(const Peer& peer, const PublicKey& fresh) const {
+  const SealedConnection* madeFor(const SealedPeer& peer, const PublicKey& fresh) const {
     const std::uint32_t first = indexOf(peer) * kConnectionsOfPeer;
     for (std::uint32_t i = first; i < first + kConnectionsOfPeer; ++i) {
-      const Connection& connection = connections[i];
-      const bool answered = connection.state != Connection::State::none && connection.answer[0] != 0;
+      const SealedConnection& connection = connections[i];
+      const bool answered = connection.state != SealedConnection::State::none && connection.answer[0] != 0;
       if (answered && connection.callerFresh == fresh) return &connection;
     }
     return nullptr;
   }
 
-  void answer(Peer& peer, const Caller& caller, Address from) {
+  void answer(SealedPeer& peer, const Caller& caller, Address from) {
     const std::uint32_t index = placeFor(peer);
-    Connection& connection = occupy(index, Connection::State::unconfirmed);
+    SealedConnection& connection = occupy(index, SealedConnection::State::unconfirmed);
     const auto keys = writeAnswer(caller, match, numberOf(index), connection.answer);
     if (!keys) {
-      occupy(index, Connection::State::none);
+      occupy(index, SealedConnection::State::none);
       ++counters.forged;
       return;
     }
@@ -229,7 +129,7 @@ struct SealedTransport::Impl {
   void takeAnswer(Address from, Bytes datagram) {
     const std::uint32_t index = datagram[1];
     const auto number = static_cast<std::uint16_t>(datagram[1] | datagram[2] << 8);
-    Peer& peer = peers[index / kConnectionsOfPeer];
+    SealedPeer& peer = peers[index / kConnectionsOfPeer];
     if (!peer.used || !peer.call || peer.calling != index || numberOf(index) != number) {
       ++counters.unknown;
       return;
@@ -242,14 +142,14 @@ struct SealedTransport::Impl {
     connections[index].keys = answered->keys;
     connections[index].peerNumber = answered->peerNumber;
     peer.call.reset();
-    peer.calling = kNone;
+    peer.calling = kNoConnection;
     makeCurrent(peer, index, from);
     peer.nextCall = now + kCallAgain;
     seal(peer, {});
   }
 
-  void makeCurrent(Peer& peer, std::uint32_t index, Address from) {
-    connections[index].state = Connection::State::confirmed;
+  void makeCurrent(SealedPeer& peer, std::uint32_t index, Address from) {
+    connections[index].state = SealedConnection::State::confirmed;
     peer.current = index;
     peer.below = from;
     peer.lastHeard = now;
@@ -259,8 +159,8 @@ struct SealedTransport::Impl {
   std::optional<std::uint32_t> open(Address& from, Bytes datagram, std::span<std::uint8_t> into) {
     const std::uint32_t index = datagram[1];
     const auto number = static_cast<std::uint16_t>(datagram[1] | datagram[2] << 8);
-    Connection& connection = connections[index];
-    if (connection.state < Connection::State::unconfirmed || numberOf(index) != number) {
+    SealedConnection& connection = connections[index];
+    if (connection.state < SealedConnection::State::unconfirmed || numberOf(index) != number) {
       ++counters.unknown;
       return {};
     }
@@ -293,10 +193,10 @@ struct SealedTransport::Impl {
 
   /// Notes what is true once a datagram of a connection was opened: the peer is there, at that address.
   void hear(std::uint32_t index, Address from) {
-    Peer& peer = peers[index / kConnectionsOfPeer];
+    SealedPeer& peer = peers[index / kConnectionsOfPeer];
     connections[index].heard = true;
     peer.lastHeard = now;
-    if (connections[index].state == Connection::State::unconfirmed) {
+    if (connections[index].state == SealedConnection::State::unconfirmed) {
       makeCurrent(peer, index, from);
     } else if (peer.current == index) {
       peer.below = from;
@@ -333,24 +233,25 @@ SealedTransport::SealedTransport(const Transport& below, const KeyPair& own, con
     : impl_(new Impl(below, own, match)) {
   if (sodium_init() < 0) randombytes_stir();
   // Numbers of an earlier run are not those of this one.
-  for (Connection& connection : impl_->connections) {
+  for (SealedConnection& connection : impl_->connections) {
     connection.use = static_cast<std::uint8_t>(randombytes_uniform(256));
   }
 }
 
 SealedTransport::~SealedTransport() {
   sodium_memzero(impl_->own.secretKey.data(), impl_->own.secretKey.size());
-  for (Connection& connection : impl_->connections) sodium_memzero(&connection.keys, sizeof(ConnectionKeys));
+  for (SealedConnection& connection : impl_->connections)
+    sodium_memzero(&connection.keys, sizeof(ConnectionKeys));
   delete impl_;
 }
 
 Address SealedTransport::addPeer(const PublicKey& peer) {
-  const Peer* added = impl_->letIn(peer);
+  const SealedPeer* added = impl_->letIn(peer);
   return added == nullptr ? 0 : Address{impl_->indexOf(*added)} + 1;
 }
 
 Address SealedTransport::addPeer(const PublicKey& peer, Address below) {
-  Peer* added = impl_->letIn(peer);
+  SealedPeer* added = impl_->letIn(peer);
   if (added == nullptr) return 0;
   added->callable = true;
   added->below = below;
@@ -359,7 +260,7 @@ Address SealedTransport::addPeer(const PublicKey& peer, Address below) {
 }
 
 void SealedTransport::removePeer(Address peer) {
-  if (Peer* found = impl_->find(peer)) impl_->remove(*found);
+  if (SealedPeer* found = impl_->find(peer)) impl_->remove(*found);
 }
 
 void SealedTransport::setAdmission(Admission admission, void* data) {
@@ -369,15 +270,15 @@ void SealedTransport::setAdmission(Admission admission, void* data) {
 
 void SealedTransport::update(std::uint64_t now) {
   impl_->now = now;
-  for (Peer& peer : impl_->peers) {
+  for (SealedPeer& peer : impl_->peers) {
     impl_->callIfNeeded(peer);
     impl_->confirmAgain(peer);
   }
 }
 
 void SealedTransport::send(Address peer, Bytes bytes) {
-  Peer* found = impl_->find(peer);
-  if (found == nullptr || found->current == kNone || bytes.size() > kMaxPayload) {
+  SealedPeer* found = impl_->find(peer);
+  if (found == nullptr || found->current == kNoConnection || bytes.size() > kMaxPayload) {
     ++impl_->counters.unsent;
     return;
   }
@@ -397,12 +298,12 @@ Transport SealedTransport::transport() {
 }
 
 bool SealedTransport::connected(Address peer) const {
-  const Peer* found = impl_->find(peer);
-  return found != nullptr && found->current != kNone;
+  const SealedPeer* found = impl_->find(peer);
+  return found != nullptr && found->current != kNoConnection;
 }
 
 PublicKey SealedTransport::keyOf(Address peer) const {
-  const Peer* found = impl_->find(peer);
+  const SealedPeer* found = impl_->find(peer);
   return found == nullptr ? PublicKey{} : found->key;
 }
 
