@@ -69,6 +69,20 @@ struct RelativePose {
   }
 };
 
+/// Rotation of a body when a contact of its was collided: cosine and sine in units of 2^-30 toward zero; 0
+/// where nothing was.
+struct KeptRotation {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("x", self.x);
+    visit("y", self.y);
+  }
+  friend bool operator==(const KeptRotation&, const KeptRotation&) = default;
+};
+
 /// Recycling state of a pair: what is known from the last time it was collided.
 enum class Manifold : std::uint8_t {
   unknown = 0,   ///< Nothing that holds: to be collided in any case.
@@ -98,6 +112,10 @@ struct Pair {
   std::uint8_t solved = 0;
   /// Normal from a to b, a unit vector in the coordinates of a's body.
   Vector<S> localNormal{};
+  /// Rotations of the bodies as the soft step takes them for the normal and the arms of the contact: those of
+  /// the last collision, until a body has turned too far from there.
+  KeptRotation rotationA{};
+  KeptRotation rotationB{};
   Contact<S> contacts[kMaxContactsPerPair]{};
   /// Restitution for this step, from the shapes or from Arbiter's setters. No state.
   S elasticity{};
@@ -115,6 +133,8 @@ struct Pair {
     visit("a", self.a.index);
     visit("b", self.b.index);
     visit("localNormal", self.localNormal);
+    visit("rotationA", self.rotationA);
+    visit("rotationB", self.rotationB);
     visit("contact[0]", self.contacts[0]);
     visit("contact[1]", self.contacts[1]);
     visit("pose", self.pose);

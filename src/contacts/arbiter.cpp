@@ -112,6 +112,7 @@ void Arbiter<S>::setContactPointSet(const ContactPointSet<S>& set) {
   }
 
   pair_.localNormal = unrotate(swapped_ ? -set.normal : set.normal, bodies_[0]->rotation());
+  keepRotations(pair_, bodies_[0]->rotation(), bodies_[1]->rotation());
   for (int i = 0; i < set.count; ++i) {
     Contact<S>& contact = pair_.contacts[i];
     contact.anchorA = bodies_[0]->toLocal(swapped_ ? set.points[i].pointB : set.points[i].pointA);

@@ -129,4 +129,55 @@ template <Scalar S>
   return max(x, y) <= room && x * x + y * y <= room * room;
 }
 
+/// Bits of a kept rotation.
+inline constexpr int kRotationBits = 30;
+/// Metres that a point of a shape moves at the most while its body turns away from the rotation that a pair
+/// has kept.
+template <Scalar S>
+inline constexpr S kKeptWay = ratio<S>(1, 128);
+
+template <Scalar S>
+[[gnu::always_inline]] inline KeptRotation keptRotation(const Vector<S>& rotation) {
+  const auto units = [](S x) {
+    if constexpr (FixedNumber<S>) {
+      return static_cast<std::int32_t>(x.raw() / (std::int64_t{1} << (S::kBits - kRotationBits)));
+    } else {
+      return static_cast<std::int32_t>(x * S(1 << kRotationBits));
+    }
+  };
+  return {units(rotation.x), units(rotation.y)};
+}
+/// Cosine and sine of a kept rotation.
+template <Scalar S>
+[[gnu::always_inline]] inline Vector<S> rotationOf(const KeptRotation& kept) {
+  const auto number = [](std::int32_t x) {
+    if constexpr (FixedNumber<S>) {
+      return S::fromRaw(std::int64_t{x} * (std::int64_t{1} << (S::kBits - kRotationBits)));
+    } else {
+      return static_cast<S>(x) * S(0x1p-30);
+    }
+  };
+  return {number(kept.x), number(kept.y)};
+}
+
+template <Scalar S>
+void keepRotations(Pair<S>& pair, const Vector<S>& a, const Vector<S>& b) {
+  pair.rotationA = keptRotation(a);
+  pair.rotationB = keptRotation(b);
+}
+
+/// Takes the rotations that the bodies of a pair have now where either has turned so far from the kept one
+/// that a point of its shape may have moved by more than kKeptWay. The soft step takes normals and arms as
+/// they were: a contact that turns with its bodies, by ever so little, is what lets high stacks buckle.
+/// @param reach  of the larger shape, in units of 1 / kReachUnits m
+template <Scalar S>
+[[gnu::always_inline]] inline void followRotations(Pair<S>& pair, const Frame<S>& a, const Frame<S>& b,
+                                                   std::int32_t reach) {
+  const Vector<S> keptA = rotationOf<S>(pair.rotationA), keptB = rotationOf<S>(pair.rotationB);
+  const S turned = max(abs(cross(keptA, a.rotation)), abs(cross(keptB, b.rotation)));
+  const bool near = turned * S(reach) <= kKeptWay<S> * S(kReachUnits);
+  if (near && dot(keptA, a.rotation) > S(0) && dot(keptB, b.rotation) > S(0)) return;
+  keepRotations(pair, a.rotation, b.rotation);
+}
+
 }  // namespace samestep

@@ -73,6 +73,7 @@ void pushContacts(Pair<S>& pair, const CollisionInfo<S>& info, const Frame<S>& a
   }
   for (int i = info.count; i < kMaxContactsPerPair; ++i) pair.contacts[i] = {};
   pair.localNormal = unrotate(info.normal, a.rotation);
+  keepRotations(pair, a.rotation, b.rotation);
   pair.count = static_cast<std::uint8_t>(info.count);
 }
 

@@ -28,8 +28,9 @@ struct FieldFlaw {
 };
 
 /// Fields and sections that worlds have since format 2.
-constexpr const char* kSince2[] = {"sleepTimeThreshold", "idleSpeedThreshold", "restTime",    "island",
-                                   "activity",           "maySleep",           "resting pair"};
+constexpr const char* kSince2[] = {"sleepTimeThreshold", "idleSpeedThreshold", "restTime",     "island",
+                                   "activity",           "maySleep",           "resting pair", "rotationA",
+                                   "rotationB"};
 
 /// Reads the fields and sections of one world.
 template <Scalar S>
@@ -115,6 +116,12 @@ class WorldReader {
     };
     if (exists(pair.a)) pair.a = world_.shapes.idAt(pair.a.index);
     if (exists(pair.b)) pair.b = world_.shapes.idAt(pair.b.index);
+    if (bytes_.lacks("rotationA") && exists(pair.a) && exists(pair.b)) {
+      const auto rotationOf = [&](ShapeId shape) {
+        return world_.bodies.valueAt(world_.shapes.valueAt(shape.index).body().index).rotation();
+      };
+      keepRotations(pair, rotationOf(pair.a), rotationOf(pair.b));
+    }
     return check_.flawOf(pair);
   }
   const char* accept(const HandlerBinding& binding) { return check_.flawOf(binding); }

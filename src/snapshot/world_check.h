@@ -6,6 +6,7 @@
 
 #include <samestep/state.h>
 
+#include "contacts/contact_geometry.h"
 #include "contacts/contact_row.h"
 
 namespace samestep {
@@ -49,8 +50,12 @@ const char* flawOfContact(const Contact<S>& contact) {
 template <Scalar S>
 const char* flawOfKept(const Pair<S>& pair) {
   const S far = S(2 * kMaxExtent), slack = ratio<S>(1, 64);
-  const S unit = lengthSq(pair.localNormal);
-  bool good = pair.count > 0 && unit >= S(1) - slack && unit <= S(1) + slack;
+  const auto isUnit = [&](S lengthSquared) {
+    return lengthSquared >= S(1) - slack && lengthSquared <= S(1) + slack;
+  };
+  bool good = pair.count > 0 && isUnit(lengthSq(pair.localNormal)) &&
+              isUnit(lengthSq(rotationOf<S>(pair.rotationA))) &&
+              isUnit(lengthSq(rotationOf<S>(pair.rotationB)));
   for (const Contact<S>& contact : pair.contacts) {
     good = good && within(contact.anchorA, far) && within(contact.anchorB, far);
   }

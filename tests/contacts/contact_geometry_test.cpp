@@ -279,5 +279,66 @@ TYPED_TEST(ContactGeometryTest, ASeparationIsExactWhereAContactIsKept) {
   EXPECT_NEAR(double(depth() - before), double(lift), 1e-9);
 }
 
+TYPED_TEST(ContactGeometryTest, AKeptRotationIsThatOfTheBodyToABillionth) {
+  using S = TypeParam;
+  for (const S angle : {S(0), ratio<S>(1, 3), S(2), S(-3)}) {
+    const Vector<S> rotation = forAngle(angle);
+    const Vector<S> kept = rotationOf<S>(keptRotation(rotation));
+    EXPECT_NEAR(static_cast<double>(kept.x), static_cast<double>(rotation.x), 0x1p-30);
+    EXPECT_NEAR(static_cast<double>(kept.y), static_cast<double>(rotation.y), 0x1p-30);
+    EXPECT_EQ(keptRotation(Vector<S>(rotation.x, -rotation.y)).y, -keptRotation(rotation).y);
+  }
+  EXPECT_EQ(rotationOf<S>(keptRotation(Vector<S>(S(1), S(0)))), Vector<S>(S(1), S(0)));
+}
+
+// A reach of 4 m: half of 1/128 m in a turn of 1/1024.
+TYPED_TEST(ContactGeometryTest, RotationsAreKeptWhileNoPointMovesByMoreThanEightMillimetres) {
+  using S = TypeParam;
+  const Frame<S> still;
+  for (const S sign : {S(1), S(-1)}) {
+    for (const bool first : {true, false}) {
+      Pair<S> pair;
+      const auto follow = [&](S angle) {
+        const Frame<S> turned{{}, forAngle(sign * angle)};
+        followRotations(pair, first ? turned : still, first ? still : turned, 4 * kReachUnits);
+      };
+      follow(S(0));
+      const Pair<S> before = pair;
+      follow(ratio<S>(1, 1024));
+      EXPECT_EQ(pair.rotationA, before.rotationA);
+      EXPECT_EQ(pair.rotationB, before.rotationB);
+      follow(ratio<S>(3, 1024));
+      EXPECT_EQ(pair.rotationA, keptRotation(forAngle(first ? sign * ratio<S>(3, 1024) : S(0))));
+      EXPECT_EQ(pair.rotationB, keptRotation(forAngle(first ? S(0) : sign * ratio<S>(3, 1024))));
+      // By half a turn, whose sine is small again.
+      follow(S(3));
+      EXPECT_NE(pair.rotationA == before.rotationA, pair.rotationB == before.rotationB);
+    }
+  }
+}
+
+// The board turns by 0.2 rad/s about its middle; its friction and that of the box make a coefficient of 0.36,
+// whose angle is 0.3456 rad.
+TYPED_TEST(ContactGeometryTest, ABoxOnATiltingBoardSlidesAtItsAngleOfFriction) {
+  using S = TypeParam;
+  Space<S> space;
+  space.setGravity({S(0), S(-10)});
+  Body<S> tilting = Body<S>::kinematic();
+  tilting.setAngularVelocity(ratio<S>(1, 5));
+  const BodyId board = space.add(tilting);
+  Shape<S> plate = boxShape<S>(board, S(8), S(1));
+  plate.setFriction(ratio<S>(3, 5));
+  space.add(plate);
+  const ShapeId box = addBox<S>(space, {S(0), ratio<S>(3, 4)}, S(1), ratio<S>(1, 2), S(1));
+  space.change(box, [](Shape<S>& shape) { shape.setFriction(ratio<S>(3, 5)); });
+  const auto along = [&] {
+    return static_cast<double>(space.body(board).toLocal(space.body(bodyOf(space, box)).position()).x);
+  };
+  for (int i = 0; i < 98; ++i) space.step(kTick<S>);
+  EXPECT_NEAR(along(), 0, 0.004);
+  for (int i = 0; i < 42; ++i) space.step(kTick<S>);
+  EXPECT_LT(along(), -0.02);
+}
+
 }  // namespace
 }  // namespace samestep

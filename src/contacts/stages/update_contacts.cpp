@@ -156,6 +156,7 @@ std::uint8_t UpdateContacts<S>::collidePair(const StepContext<S>& step, Pair<S>&
     if (info.count == 0) return 0;
     pushContacts(pair, info, bodyA.frame, bodyB.frame);
   }
+  if (same) followRotations(pair, bodyA.frame, bodyB.frame, max(shapeA.reach, shapeB.reach));
   // Now, even if nothing meets in this step: another may take the contact as it is.
   if (!same || !deciding.surfacesKnown) {
     takeSurfaces(pair, derived.surfaces[shapeA.surface], derived.surfaces[shapeB.surface], {});

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "base/require_ieee.h"
+#include "contacts/contact_geometry.h"
 #include "contacts/contact_row.h"
 #include "solver/kernels/generic/coefficient_lanes.h"
 #include "solver/kernels/generic/integer_vectors.h"
@@ -256,10 +257,11 @@ bool BlockSolver<S, N>::addPair(std::uint32_t at, int lane, const Pair<S>& pair,
   block.shareA[lane] = shares.a;
   in.normalX[lane] = units_.unit(pair.localNormal.x);
   in.normalY[lane] = units_.unit(pair.localNormal.y);
-  in.cosA[lane] = units_.unit(a.rotation.x);
-  in.sinA[lane] = units_.unit(a.rotation.y);
-  in.cosB[lane] = units_.unit(b.rotation.x);
-  in.sinB[lane] = units_.unit(b.rotation.y);
+  const Vector<S> rotationA = rotationOf<S>(pair.rotationA), rotationB = rotationOf<S>(pair.rotationB);
+  in.cosA[lane] = units_.unit(rotationA.x);
+  in.sinA[lane] = units_.unit(rotationA.y);
+  in.cosB[lane] = units_.unit(rotationB.x);
+  in.sinB[lane] = units_.unit(rotationB.y);
   fillMoments(block, lane, pair, a, b, in);
   std::int64_t misfit = 0;
   const auto kept = [&](S speed) { return units_.perUnit(units_.sum(speed, misfit), shares.perSpeed); };
@@ -314,14 +316,21 @@ bool BlockSolver<S, N>::placePoints(std::uint32_t at, int lane, S bounceThreshol
   block.surface[lane] =
       pair.surfaceVelocity == Vector<S>() ? Speed(0) : units_.speed(cross(n, pair.surfaceVelocity), misfit);
   const bool near = !kIntegers || max(a.radiusBits, b.radiusBits) <= kNearBits;
+  // Separations follow the bodies, which have turned little since.
+  const S turnedA = cross(rotationOf<S>(pair.rotationA), a.rotation);
+  const S turnedB = cross(rotationOf<S>(pair.rotationB), b.rotation);
   S overlap = S(0);
   for (int i = 0; i < pair.count; ++i) {
     const Contact<S>& contact = pair.contacts[i];
     const auto& tangent = block.point[i].tangent;
+    const auto& normal = block.point[i].normal;
     S apart;
     if (near) [[likely]] {
-      apart = centers + (units_.fromArm(tangent.armB[lane], b.radiusBits) -
-                         units_.fromArm(tangent.armA[lane], a.radiusBits));
+      apart = centers +
+              (units_.fromArm(tangent.armB[lane], b.radiusBits) -
+               units_.fromArm(tangent.armA[lane], a.radiusBits)) +
+              cross(units_.fromArm(normal.armB[lane], b.radiusBits), turnedB,
+                    units_.fromArm(normal.armA[lane], a.radiusBits), turnedA);
     } else {
       apart = dot(n, between + (rotate(b.arm(contact.anchorB), b.rotation) -
                                 rotate(a.arm(contact.anchorA), a.rotation)));
