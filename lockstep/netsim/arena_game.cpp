@@ -10,18 +10,23 @@
 namespace samestep::netsim {
 namespace {
 
-constexpr std::uint32_t kCrates = 6;
-
 /// The arena of the example. The oracle's players hold numbers and give numbered commands; here they stand
 /// for buttons, and now and then for a crate.
 class ArenaGame : public SimGame {
  public:
-  ArenaGame() : game_(arena_.space(), ratio<Fixed>(1, 60), apply, &arena_), functions_(game_.functions()) {}
+  explicit ArenaGame(std::uint32_t players)
+      : arena_(players, players / 3 + 1),
+        game_(arena_.space(), ratio<Fixed>(1, 60), apply, &arena_),
+        functions_(game_.functions()) {}
 
   void save(std::uint32_t slot) override { functions_.save(slot, functions_.data); }
   void load(std::uint32_t slot) override { functions_.load(slot, functions_.data); }
   void step(const TickInputs& inputs) override { functions_.step(inputs, functions_.data); }
   std::uint64_t hash() override { return functions_.hash(functions_.data); }
+  std::uint64_t write(std::uint32_t slot, std::span<std::uint8_t> into) override {
+    return functions_.write(slot, into, functions_.data);
+  }
+  bool read(std::span<const std::uint8_t> bytes) override { return functions_.read(bytes, functions_.data); }
   void flip() override {
     auto& body = arena_.space().body(arena_.player(0));
     const Vector<Fixed> at = body.position();
@@ -47,13 +52,13 @@ class ArenaGame : public SimGame {
     arena::Arena<Fixed>::applyInputs(space, {inputs.tick, {players.data(), inputs.players.size()}}, data);
   }
 
-  arena::Arena<Fixed> arena_{kMaxPlayers, kCrates};
+  arena::Arena<Fixed> arena_;
   SpaceGame<Fixed> game_;
   Game functions_;
 };
 
 }  // namespace
 
-std::unique_ptr<SimGame> makeArenaGame() { return std::make_unique<ArenaGame>(); }
+std::unique_ptr<SimGame> makeArenaGame(std::uint32_t players) { return std::make_unique<ArenaGame>(players); }
 
 }  // namespace samestep::netsim

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <array>
+#include <cstring>
 
 #include "netsim/random.h"
 #include "netsim/sim_game.h"
@@ -22,6 +23,15 @@ class IntegerGame : public SimGame {
     }
   }
   std::uint64_t hash() override { return value_; }
+  std::uint64_t write(std::uint32_t slot, std::span<std::uint8_t> into) override {
+    if (into.size() >= sizeof value_) std::memcpy(into.data(), &saved_[slot], sizeof value_);
+    return sizeof value_;
+  }
+  bool read(std::span<const std::uint8_t> bytes) override {
+    if (bytes.size() != sizeof value_) return false;
+    std::memcpy(&value_, bytes.data(), sizeof value_);
+    return true;
+  }
   void flip() override { value_ ^= 1; }
 
  private:
@@ -33,6 +43,6 @@ class IntegerGame : public SimGame {
 
 }  // namespace
 
-std::unique_ptr<SimGame> makeIntegerGame() { return std::make_unique<IntegerGame>(); }
+std::unique_ptr<SimGame> makeIntegerGame(std::uint32_t) { return std::make_unique<IntegerGame>(); }
 
 }  // namespace samestep::netsim

@@ -15,10 +15,13 @@ namespace {
 constexpr Time kSecond = 1'000'000;
 /// Strangers' datagrams come from here.
 constexpr Address kNobody = kMaxPlayers;
+/// Where a seat's peer is once it has moved.
+constexpr Address kElsewhere = kMaxPlayers + 1;
+constexpr std::uint32_t kNodes = 2 * kMaxPlayers + 1;
 
 /// Something that happens once.
 struct Happening {
-  enum class Kind : std::uint8_t { partition, heal, stall, crash, leave, change, pause };
+  enum class Kind : std::uint8_t { partition, heal, stall, crash, leave, change, pause, join, rejoin, move };
   Time time = 0;
   Kind kind = Kind::heal;
   Seat seat = 0;
@@ -31,7 +34,9 @@ class Match {
   explicit Match(const MatchOptions& options)
       : options_(options),
         random_(lockstep::mix(options.seed) + options.peers),
-        network_(kMaxPlayers + 1, random_.next()) {
+        network_(kNodes, random_.next()),
+        seats_(options.peers) {
+    if (has(kJoin)) seats_ += random_.within(0, std::min(2u, kMaxPlayers - options.peers));
     shapeLinks();
     addPeers();
     plan();
@@ -44,6 +49,10 @@ class Match {
   bool has(Fault fault) const { return (options_.faults & fault) != 0; }
   void shapeLinks();
   void addPeers();
+  SessionSettings settingsOf(Seat seat, bool joins);
+  void addPeer(const SessionSettings& settings, Time from);
+  /// Who has a seat now, or had it last.
+  Peer* peerAt(Seat seat) const;
   void plan();
   void plant();
   void happen(const Happening& happening);
@@ -55,22 +64,27 @@ class Match {
   const MatchOptions& options_;
   Random random_;
   Network network_;
+  std::uint32_t seats_;
+  SessionSettings common_;
+  Seat liar_ = kNoSeat;
   std::vector<std::unique_ptr<Peer>> peers_;
   std::vector<Happening> plan_;
   Oracle oracle_;
+  std::uint32_t moved_ = 0;
   Tick plantedTick_ = 0;
   Seat plantedSeat_ = 0;
 };
 
 void Match::shapeLinks() {
   const Time delay = random_.within(1, 80) * 1000;
-  for (Address from = 0; from < options_.peers; ++from) {
-    for (Address to = 0; to < options_.peers; ++to) {
+  for (Address from = 0; from < seats_; ++from) {
+    for (Address to = 0; to < seats_; ++to) {
       LinkProfile& profile = network_.profile(from, to);
       profile.delay = delay + random_.below(10'000);
       if (options_.delay != MatchOptions::kBySeed) profile.delay = options_.delay * 1000;
       if (options_.loss != MatchOptions::kBySeed) profile.loss = options_.loss * 10;
       if (has(kAsymmetric) && from < to) profile.delay += random_.below(60'000);
+      if (has(kCorrupt)) profile.corrupt = random_.below(30);
       if (!has(kLoss)) continue;
       profile.jitter = random_.below(30'000);
       profile.loss = random_.below(60);
@@ -85,30 +99,57 @@ void Match::shapeLinks() {
       }
     }
   }
+  // A peer that has moved has the same path as before.
+  for (Address from = 0; from < seats_; ++from) {
+    for (Address to = 0; to < seats_; ++to) {
+      const LinkProfile profile = network_.profile(from, to);
+      network_.profile(from + kElsewhere, to) = profile;
+      network_.profile(from, to + kElsewhere) = profile;
+      network_.profile(from + kElsewhere, to + kElsewhere) = profile;
+    }
+  }
 }
 
 void Match::addPeers() {
-  SessionSettings settings;
-  settings.match = static_cast<std::uint32_t>(options_.seed);
-  settings.players = static_cast<std::uint8_t>(options_.peers);
-  settings.maxHeldBytes = 4;
-  settings.maxCommandBytes = 16;
+  common_.match = static_cast<std::uint32_t>(options_.seed);
+  common_.players = static_cast<std::uint8_t>(options_.peers);
+  common_.maxPlayers = static_cast<std::uint8_t>(seats_);
+  common_.maxHeldBytes = 4;
+  common_.maxCommandBytes = 16;
   // Most games keep the usual one.
-  if (random_.perMille(500)) settings.hashInterval = static_cast<std::uint16_t>(random_.within(1, 60));
-  for (Seat seat = 0; seat < options_.peers; ++seat) settings.addresses[seat] = seat;
-  for (Seat seat = 0; seat < options_.peers; ++seat) {
-    settings.localSeat = seat;
-    settings.window = static_cast<std::uint8_t>(random_.perMille(200) ? 0 : random_.within(1, kMaxWindow));
-    settings.inputDelay = static_cast<std::uint8_t>(random_.within(settings.window == 0 ? 3 : 0, 8));
-    settings.saving = random_.perMille(400) ? Saving::sparse : Saving::everyStep;
-    settings.prediction = random_.perMille(200) ? Prediction::nothing : Prediction::repeatLast;
-    settings.runAhead =
-        static_cast<std::uint8_t>(random_.perMille(200) ? random_.within(1, kMaxRunAhead) : 0);
-    peers_.push_back(std::make_unique<Peer>(settings, options_, network_, random_.next()));
-    peers_.back()->stallUntil(random_.below(200'000));
-    if (!has(kDrift)) continue;
-    peers_.back()->setDrift(static_cast<std::int32_t>(random_.within(0, 300)) - 150, random_.next() >> 24);
+  if (random_.perMille(500)) common_.hashInterval = static_cast<std::uint16_t>(random_.within(1, 60));
+  for (Seat seat = 0; seat < seats_; ++seat) common_.addresses[seat] = seat;
+  // Of two, nobody could say who lies.
+  if (has(kLie) && options_.peers > 2) liar_ = static_cast<Seat>(random_.below(options_.peers));
+  for (Seat seat = 0; seat < options_.peers; ++seat) addPeer(settingsOf(seat, false), random_.below(200'000));
+}
+
+SessionSettings Match::settingsOf(Seat seat, bool joins) {
+  SessionSettings settings = common_;
+  settings.localSeat = seat;
+  settings.joins = joins;
+  settings.window = static_cast<std::uint8_t>(random_.perMille(200) ? 0 : random_.within(1, kMaxWindow));
+  settings.inputDelay = static_cast<std::uint8_t>(random_.within(settings.window == 0 ? 3 : 0, 8));
+  settings.saving = random_.perMille(400) ? Saving::sparse : Saving::everyStep;
+  settings.prediction = random_.perMille(200) ? Prediction::nothing : Prediction::repeatLast;
+  settings.runAhead = static_cast<std::uint8_t>(random_.perMille(200) ? random_.within(1, kMaxRunAhead) : 0);
+  return settings;
+}
+
+void Match::addPeer(const SessionSettings& settings, Time from) {
+  peers_.push_back(std::make_unique<Peer>(settings, options_, network_, random_.next()));
+  peers_.back()->stallUntil(from);
+  if (settings.localSeat == liar_) peers_.back()->lie();
+  if (!has(kDrift)) return;
+  peers_.back()->setDrift(static_cast<std::int32_t>(random_.within(0, 300)) - 150, random_.next() >> 24);
+}
+
+Peer* Match::peerAt(Seat seat) const {
+  Peer* found = nullptr;
+  for (const auto& peer : peers_) {
+    if (peer->seat() == seat) found = peer.get();
   }
+  return found;
 }
 
 /// Plans what happens, so that at no time half of the peers are gone.
@@ -126,17 +167,29 @@ void Match::plan() {
   if (has(kCrash) && spare > 0 && random_.perMille(600)) {
     --spare;
     plan_.push_back({when(), Kind::crash, mayGo(), 0, 0});
+    if (has(kRejoin)) {
+      const Time after = random_.below(8000) * 1000;
+      plan_.push_back({plan_.back().time + after, Kind::rejoin, plan_.back().seat, 0, 0});
+    }
   }
+  for (Seat late = static_cast<Seat>(options_.peers); late < seats_; ++late)
+    plan_.push_back({when(), Kind::join, late, 0, 0});
   for (std::uint32_t i = 0; has(kStall) && i < 2; ++i) {
     // Now and then long enough to be dropped.
     const bool dropped = spare > 0 && random_.perMille(200);
     if (dropped) --spare;
     plan_.push_back({when(), Kind::stall, dropped ? mayGo() : seat(),
                      random_.below(2000) * 1000 + (dropped ? 6 * kSecond : 0), 0});
+    const Happening stall = plan_.back();
+    if (dropped && has(kRejoin)) {
+      plan_.push_back(
+          {stall.time + stall.lasts + random_.below(3000) * 1000, Kind::rejoin, stall.seat, 0, 0});
+    }
   }
   for (std::uint32_t i = 0; has(kChange) && i < 8 * options_.peers; ++i)
     plan_.push_back({when(), Kind::change, seat(), 0, 0});
   if (has(kChange)) plan_.push_back({when(), Kind::pause, seat(), random_.below(3000) * 1000, 0});
+  if (has(kMove)) plan_.push_back({when(), Kind::move, seat(), 0, 0});
   if (has(kPartition)) {
     const bool dropped = spare > 0 && random_.perMille(300);
     const Time start = when();
@@ -163,9 +216,12 @@ void Match::plant() {
 }
 
 void Match::partition(std::uint32_t seats, bool blocked) {
-  for (Address from = 0; from < options_.peers; ++from) {
-    for (Address to = 0; to < options_.peers; ++to) {
-      if ((seats >> from & 1) != (seats >> to & 1)) network_.block(from, to, blocked);
+  for (Address from = 0; from < seats_; ++from) {
+    for (Address to = 0; to < seats_; ++to) {
+      if ((seats >> from & 1) == (seats >> to & 1)) continue;
+      for (const Address a : {from, from + kElsewhere}) {
+        for (const Address b : {to, to + kElsewhere}) network_.block(a, b, blocked);
+      }
     }
   }
 }
@@ -189,7 +245,10 @@ void Match::change(Session& session) {
 }
 
 void Match::happen(const Happening& happening) {
-  Peer& peer = *peers_[happening.seat];
+  if (happening.kind == Happening::Kind::join) {
+    return addPeer(settingsOf(happening.seat, true), happening.time);
+  }
+  Peer& peer = *peerAt(happening.seat);
   switch (happening.kind) {
     case Happening::Kind::partition:
       return partition(happening.seats, true);
@@ -205,21 +264,37 @@ void Match::happen(const Happening& happening) {
       return change(peer.session());
     case Happening::Kind::pause:
       return peer.pauseUntil(happening.time + happening.lasts);
+    case Happening::Kind::move:
+      moved_ += peer.running() && peer.node() == peer.seat() ? 1 : 0;
+      return peer.moveTo(peer.seat() + kElsewhere);
+    case Happening::Kind::rejoin:
+      if (!peer.running() && peer.ended() != EndReason::left) {
+        addPeer(settingsOf(happening.seat, true), happening.time);
+      }
+      return;
+    case Happening::Kind::join:
+      return;
   }
 }
 
 /// Strangers' bytes, and datagrams heard on the way that come again.
 void Match::disturb(Time now) {
   if (!has(kHostile) || !random_.perMille(300)) return;
-  const Address to = random_.below(options_.peers);
+  const Address to = random_.below(seats_);
   auto& box = network_.inbox(to);
   if (!box.empty() && random_.perMille(500)) {
     network_.send(box.front().from, to, std::vector(box.front().bytes), now);
     return;
   }
-  std::vector<std::uint8_t> bytes(random_.within(1, kMaxDatagram));
+  // Half of the strangers have a key of the match, as those who only watch might.
+  std::vector<std::uint8_t> bytes(random_.within(Seal::kBytes + 1, kMaxPacket));
   for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random_.next());
-  if (random_.perMille(500)) bytes[0] &= 15;
+  if (random_.perMille(500)) bytes[Seal::kBytes] &= 15;
+  if (random_.perMille(500)) {
+    Seal stranger(common_.match, kNobody);
+    const std::vector<std::uint8_t> inner(bytes.begin() + Seal::kBytes, bytes.end());
+    stranger.close(inner, bytes);
+  }
   network_.send(kNobody, to, bytes, now);
 }
 
@@ -255,6 +330,9 @@ MatchReport Match::run() {
   report.peers = options_.peers;
   report.datagrams = network_.sent();
   report.lost = network_.lost();
+  report.spoilt = network_.spoilt();
+  report.moved = moved_;
+  for (const auto& peer : peers_) report.forged += peer->seal().forged();
   return report;
 }
 
@@ -290,7 +368,7 @@ MatchOptions shrink(const MatchOptions& failing) {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, std::uint32_t>, 10> kFaultNames{{{"loss", kLoss},
+constexpr std::array<std::pair<const char*, std::uint32_t>, 15> kFaultNames{{{"loss", kLoss},
                                                                              {"partition", kPartition},
                                                                              {"stall", kStall},
                                                                              {"crash", kCrash},
@@ -299,6 +377,11 @@ constexpr std::array<std::pair<const char*, std::uint32_t>, 10> kFaultNames{{{"l
                                                                              {"drift", kDrift},
                                                                              {"hostile", kHostile},
                                                                              {"asymmetric", kAsymmetric},
+                                                                             {"join", kJoin},
+                                                                             {"rejoin", kRejoin},
+                                                                             {"lie", kLie},
+                                                                             {"corrupt", kCorrupt},
+                                                                             {"move", kMove},
                                                                              {"all", kAllFaults}}};
 
 }  // namespace

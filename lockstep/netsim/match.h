@@ -22,8 +22,13 @@ enum Fault : std::uint32_t {
   kDrift = 64,        ///< Clocks run at different speeds, up to 300 ppm apart, and from different zeros.
   kHostile = 128,     ///< Strangers send bytes; old datagrams come again.
   kAsymmetric = 256,  ///< Links are slower one way.
+  kJoin = 512,        ///< Newcomers take seats that were not there at the start.
+  kRejoin = 1024,     ///< Who crashed or was dropped begins anew, and comes back.
+  kLie = 2048,        ///< A peer sends newcomers another state than the one it has.
+  kCorrupt = 4096,    ///< Datagrams are changed on the way.
+  kMove = 8192,       ///< Peers come to have another address.
 };
-inline constexpr std::uint32_t kAllFaults = 511;
+inline constexpr std::uint32_t kAllFaults = 16383;
 /// "loss", "partition", ...; 0 for another word.
 std::uint32_t faultNamed(const std::string& name);
 std::string faultNames(std::uint32_t faults);
@@ -31,9 +36,11 @@ std::string faultNames(std::uint32_t faults);
 /// Fault planted on purpose, to see that the oracle notices.
 enum class Planted : std::uint8_t {
   none,
-  flip,     ///< One bit of one peer's state, once.
-  deaf,     ///< One peer's game does not see one input that all others see.
-  forgets,  ///< One peer's game does not come back wholly from a load, once.
+  flip,      ///< One bit of one peer's state, once.
+  deaf,      ///< One peer's game does not see one input that all others see.
+  forgets,   ///< One peer's game does not come back wholly from a load, once.
+  lies,      ///< One peer tells other hashes than those of its states.
+  unsealed,  ///< One peer takes datagrams that were changed on the way.
 };
 
 struct MatchOptions {
@@ -42,7 +49,7 @@ struct MatchOptions {
   Tick ticks = 3600;
   std::uint32_t faults = kAllFaults;
   Planted planted = Planted::none;
-  std::unique_ptr<SimGame> (*makeGame)() = makeIntegerGame;
+  std::unique_ptr<SimGame> (*makeGame)(std::uint32_t players) = makeIntegerGame;
   /// Delay of each link in ms, and how many of a hundred datagrams are lost; kBySeed: as the seed has it.
   static constexpr std::uint32_t kBySeed = 0xffffffffu;
   std::uint32_t delay = kBySeed;
@@ -64,6 +71,12 @@ struct MatchReport {
   std::uint32_t survivors = 0;
   std::uint32_t dropped = 0;
   std::uint32_t left = 0;
+  std::uint32_t joined = 0;    ///< Seats taken in the match, those taken again included.
+  std::uint32_t rejoined = 0;  ///< Those of them that were taken before.
+  std::uint32_t refused = 0;   ///< States that newcomers did not believe.
+  std::uint32_t moved = 0;     ///< Peers that came to have another address.
+  std::uint64_t forged = 0;    ///< Datagrams that were dropped for their seal.
+  std::uint64_t spoilt = 0;    ///< Those that were changed on the way.
   std::uint64_t steps = 0;
   std::uint64_t rollbacks = 0;
   std::uint32_t deepest = 0;

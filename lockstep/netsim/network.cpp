@@ -53,9 +53,22 @@ void Network::send(Address from, Address to, std::span<const std::uint8_t> bytes
 
 void Network::travel(Address from, Address to, std::span<const std::uint8_t> bytes, Time arrives) {
   Travelling travelling{to, {from, {bytes.begin(), bytes.end()}}};
+  const std::uint32_t corrupt = link(from, to).profile.corrupt;
+  if (corrupt != 0 && random_.perMille(corrupt)) spoil(travelling.datagram.bytes);
   // The second number is never used twice: a duplicate is counted too.
   travelling_.emplace(std::pair{arrives, sent_ * 2 + travelling_.count({arrives, sent_ * 2})},
                       std::move(travelling));
+}
+
+void Network::spoil(std::vector<std::uint8_t>& bytes) {
+  ++spoilt_;
+  const std::uint32_t what = random_.below(4);
+  const auto size = static_cast<std::uint32_t>(bytes.size());
+  if (what == 0) bytes.resize(random_.below(size + 1));
+  if (what == 1) bytes.push_back(static_cast<std::uint8_t>(random_.next()));
+  if (bytes.empty() || what < 2) return;
+  std::uint8_t& byte = bytes[random_.below(size)];
+  byte = static_cast<std::uint8_t>(byte ^ 1u << random_.below(8));
 }
 
 void Network::deliver(Time now) {

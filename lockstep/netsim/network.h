@@ -36,6 +36,8 @@ struct LinkProfile {
   std::uint32_t queue = 0;
   /// Datagrams of more bytes travel in pieces, each of which may be lost.
   std::uint32_t piece = 576;
+  /// Of datagrams, a bit, the length or both are changed on the way.
+  std::uint32_t corrupt = 0;
 };
 
 struct Datagram {
@@ -60,6 +62,7 @@ class Network {
   std::uint64_t sent() const { return sent_; }
   std::uint64_t lost() const { return lost_; }
   std::uint64_t duplicated() const { return duplicated_; }
+  std::uint64_t spoilt() const { return spoilt_; }
 
  private:
   struct Link {
@@ -76,6 +79,7 @@ class Network {
   Link& link(Address from, Address to) { return links_[from * inboxes_.size() + to]; }
   bool loses(Link& link, std::uint32_t bytes);
   void travel(Address from, Address to, std::span<const std::uint8_t> bytes, Time arrives);
+  void spoil(std::vector<std::uint8_t>& bytes);
 
   Random random_;
   std::vector<Link> links_;
@@ -85,6 +89,7 @@ class Network {
   std::uint64_t sent_ = 0;
   std::uint64_t lost_ = 0;
   std::uint64_t duplicated_ = 0;
+  std::uint64_t spoilt_ = 0;
 };
 
 }  // namespace samestep::netsim

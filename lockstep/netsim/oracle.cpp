@@ -32,8 +32,9 @@ constexpr Tick kSeen = 120;
 /// True if two peers had other states after each of so many steps: some faults heal.
 bool differFor(const Peer& a, const Peer& b, Tick from, Tick ticks) {
   if (std::min(a.certain(), b.certain()) < from + ticks) return false;
+  if (std::max(a.first(), b.first()) > from) return false;
   Tick tick = from + 1;
-  while (tick < from + ticks && a.records()[tick].state != b.records()[tick].state) ++tick;
+  while (tick < from + ticks && a.record(tick).state != b.record(tick).state) ++tick;
   return tick == from + ticks;
 }
 
@@ -46,27 +47,42 @@ void Oracle::violate(const std::string& text) { report_.violations.push_back(tex
 /// Requires that what is certain is the same everywhere.
 void Oracle::states(const Oracle::Peers& peers, const Peer& reference) {
   const Tick agreed = firstDrop(reference);
-  for (Seat seat = 0; seat < peers.size(); ++seat) {
-    const Peer& peer = *peers[seat];
-    if (peer.misused()) violate(nameOf(seat) + " was asked to step from a state that it did not have");
-    const Tick to = std::min({peer.certain(), reference.certain(), survives(peer) ? 0xffffffffu : agreed});
-    for (Tick tick = 0; tick < to; ++tick) {
-      const TickRecord &a = peer.records()[tick], &b = reference.records()[tick];
+  for (const auto& of : peers) {
+    const Peer& peer = *of;
+    if (peer.misused()) violate(nameOf(peer.seat()) + " was asked to step from a state that it did not have");
+    // Whoever has left need not know who comes afterwards.
+    const SessionEvent* left = eventOf(peer, SessionEvent::Kind::left, peer.seat());
+    const Tick knows = survives(peer) ? kNever : std::min(agreed, left == nullptr ? kNever : left->tick);
+    const Tick to = std::min({peer.certain(), reference.certain(), knows});
+    for (Tick tick = std::max(peer.first(), reference.first()); tick < to; ++tick) {
+      const TickRecord &a = peer.record(tick), &b = reference.record(tick);
       if (a.inputs == b.inputs && a.state == b.state) continue;
-      violate(nameOf(seat) + (a.inputs != b.inputs ? ": inputs" : ": states") + " of tick " +
+      violate(nameOf(peer.seat()) + (a.inputs != b.inputs ? ": inputs" : ": states") + " of tick " +
               std::to_string(tick) + " differ");
       break;
     }
   }
 }
 
+/// The tick after the last one of a peer's time in its seat.
+Tick Oracle::endOf(const Oracle::Peers& peers, std::size_t index, const Peer& reference) {
+  for (std::size_t later = index + 1; later < peers.size(); ++later) {
+    if (peers[later]->seat() == peers[index]->seat())
+      return std::min(peers[later]->start(), reference.certain());
+  }
+  return reference.certain();
+}
+
 /// Requires that what players did arrived, once, in its order, and nothing else.
 void Oracle::inputs(const Oracle::Peers& peers, const Peer& reference) {
-  for (Seat seat = 0; seat < peers.size(); ++seat) {
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    const Peer& peer = *peers[i];
+    const Seat seat = peer.seat();
     std::uint32_t held = 0;
     std::uint32_t commands = 0;
-    for (Tick tick = 0; tick < reference.certain(); ++tick) {
-      const TickRecord& record = reference.records()[tick];
+    if (peer.start() < reference.first()) continue;
+    for (Tick tick = peer.start(); tick < endOf(peers, i, reference); ++tick) {
+      const TickRecord& record = reference.record(tick);
       if (record.held[seat] != 0 && record.held[seat] < held) {
         return violate("what " + nameOf(seat) + " holds goes back at tick " + std::to_string(tick));
       }
@@ -78,7 +94,6 @@ void Oracle::inputs(const Oracle::Peers& peers, const Peer& reference) {
       }
       ++commands;
     }
-    const Peer& peer = *peers[seat];
     const bool all = survives(peer) || eventOf(reference, SessionEvent::Kind::left, seat) != nullptr;
     if (held > peer.heldGiven() || commands > peer.commandsGiven() ||
         (all && commands < peer.commandsGiven())) {
@@ -91,52 +106,68 @@ void Oracle::inputs(const Oracle::Peers& peers, const Peer& reference) {
 /// The detector is silent where all is well, and speaks on both sides where not.
 void Oracle::detector(const MatchOptions& options, const Oracle::Peers& peers, Seat plantedSeat,
                       Tick plantedTick) {
-  for (Seat seat = 0; seat < peers.size(); ++seat) {
-    const SessionEvent* event = eventOf(*peers[seat], SessionEvent::Kind::desync, kNoSeat);
+  for (const auto& peer : peers) {
+    const SessionEvent* event = eventOf(*peer, SessionEvent::Kind::desync, kNoSeat);
     if (event == nullptr) continue;
-    report_.desynced |= 1u << seat;
+    report_.desynced |= 1u << peer->seat();
     report_.desyncTick = report_.desyncTick == 0 ? event->tick : std::min(report_.desyncTick, event->tick);
   }
-  for (Seat seat = 0; seat < peers.size(); ++seat) {
-    const DesyncReport* found = peers[seat]->session().desync();
+  for (const auto& peer : peers) {
+    const DesyncReport* found = peer->session().desync();
     if (found == nullptr) continue;
-    report_.findings.push_back(nameOf(seat) + ": " + desyncText(*found));
+    report_.findings.push_back(nameOf(peer->seat()) + ": " + desyncText(*found));
     // Neither is most, where there are two.
-    const std::uint32_t guilty = peers.size() > 2 ? 1u << plantedSeat : 0;
-    const bool named = std::string(found->ours.object) == peers[seat]->flipped() && found->minority == guilty;
-    if (named) report_.named |= 1u << seat;
+    const std::uint32_t guilty = options.peers > 2 ? 1u << plantedSeat : 0;
+    const bool named = std::string(found->ours.object) == peer->flipped() && found->minority == guilty;
+    if (named) report_.named |= 1u << peer->seat();
   }
   if (options.planted == Planted::none) {
     if (report_.desynced != 0) violate("a false desync at tick " + std::to_string(report_.desyncTick));
     return;
   }
-  if (!survives(*peers[plantedSeat]) || report_.violations.empty()) return;
-  for (Seat seat = 0; seat < peers.size(); ++seat) {
-    const Peer& peer = *peers[seat];
+  // The first peers are those of the start, by seat.
+  const Peer& planted = *peers[plantedSeat];
+  if (options.planted == Planted::lies) return liar(peers, planted, plantedTick);
+  if (!survives(planted) || report_.violations.empty()) return;
+  for (const auto& peer : peers) {
     const auto lasts = [&](const auto& other) {
-      return survives(*other) && differFor(*other, *peers[plantedSeat], plantedTick, kSeen);
+      return survives(*other) && differFor(*other, planted, plantedTick, kSeen);
     };
-    const bool shows =
-        seat == plantedSeat ? std::any_of(peers.begin(), peers.end(), lasts) : lasts(peers[seat]);
-    if (!survives(peer) || !shows) continue;
-    const bool sees =
-        eventOf(peer, SessionEvent::Kind::desync, seat == plantedSeat ? kNoSeat : plantedSeat) != nullptr;
-    if (!sees) violate(nameOf(seat) + " did not notice the desync");
+    const bool guilty = peer.get() == &planted;
+    const bool shows = guilty ? std::any_of(peers.begin(), peers.end(), lasts) : lasts(peer);
+    if (!survives(*peer) || !shows) continue;
+    const bool sees = eventOf(*peer, SessionEvent::Kind::desync, guilty ? kNoSeat : plantedSeat) != nullptr;
+    if (!sees) violate(nameOf(peer->seat()) + " did not notice the desync");
+  }
+}
+
+/// States are the same, and yet everybody is told otherwise by one.
+void Oracle::liar(const Oracle::Peers& peers, const Peer& planted, Tick from) {
+  if (report_.desynced != 0) {
+    violate(nameOf(planted.seat()) + " tells hashes of states that it does not have");
+  }
+  for (const auto& peer : peers) {
+    const bool heard = survives(*peer) && survives(planted) && peer.get() != &planted &&
+                       std::min(peer->certain(), planted.certain()) > from + kSeen;
+    if (heard && eventOf(*peer, SessionEvent::Kind::desync, planted.seat()) == nullptr) {
+      violate(nameOf(peer->seat()) + " did not notice the liar");
+    }
   }
 }
 
 /// Once the faults are over, the match goes on to its end.
 void Oracle::progress(const MatchOptions& options, const Oracle::Peers& peers) {
-  for (Seat seat = 0; seat < peers.size(); ++seat) {
-    if (!survives(*peers[seat]) || peers[seat]->certain() >= options.ticks) continue;
-    violate(nameOf(seat) + " is sure of " + std::to_string(peers[seat]->certain()) + " ticks only, of " +
+  for (const auto& peer : peers) {
+    if (!survives(*peer) || peer->certain() >= options.ticks) continue;
+    violate(nameOf(peer->seat()) + " is sure of " + std::to_string(peer->certain()) + " ticks only, of " +
             std::to_string(options.ticks));
   }
 }
 
 void Oracle::endings(const Oracle::Peers& peers) {
-  for (Seat seat = 0; seat < peers.size(); ++seat) {
-    const Peer& peer = *peers[seat];
+  for (const auto& of : peers) {
+    const Peer& peer = *of;
+    const Seat seat = peer.seat();
     if (peer.running() || peer.crashed()) continue;
     const EndReason reason = peer.ended();
     if (reason == EndReason::left) {
@@ -149,7 +180,7 @@ void Oracle::endings(const Oracle::Peers& peers) {
   }
 }
 
-void Oracle::count(const Oracle::Peers& peers, const Peer& reference) {
+void Oracle::count(const MatchOptions& options, const Oracle::Peers& peers, const Peer& reference) {
   for (const auto& peer : peers) {
     const SessionStats& stats = peer->session().stats();
     report_.survivors += survives(*peer) ? 1 : 0;
@@ -159,9 +190,16 @@ void Oracle::count(const Oracle::Peers& peers, const Peer& reference) {
     report_.deepest = std::max(report_.deepest, stats.deepest);
     report_.waited += stats.waited;
     report_.payload += stats.sentBytes;
+    for (const SessionEvent& event : peer->events()) {
+      report_.refused += event.kind == SessionEvent::Kind::lied ? 1 : 0;
+    }
+    const bool newcomer = peer->start() != 0 && peer->start() != kNever;
+    const bool again = newcomer && peer->seat() < options.peers;
+    report_.joined += newcomer ? 1 : 0;
+    report_.rejoined += again ? 1 : 0;
   }
-  for (Tick tick = 0; tick < reference.certain(); ++tick) {
-    const TickRecord& record = reference.records()[tick];
+  for (Tick tick = reference.first(); tick < reference.certain(); ++tick) {
+    const TickRecord& record = reference.record(tick);
     report_.trace = lockstep::mix(report_.trace * 31 + record.inputs + record.state);
   }
 }
@@ -170,8 +208,11 @@ MatchReport Oracle::judge(const MatchOptions& options, const Oracle::Peers& peer
                           Tick plantedTick) {
   const Peer* reference = nullptr;
   for (const auto& peer : peers) {
-    if (survives(*peer) && (reference == nullptr || peer->certain() > reference->certain()))
-      reference = peer.get();
+    if (!survives(*peer)) continue;
+    // Who was there from the start knows all.
+    const bool better = reference == nullptr || peer->first() < reference->first() ||
+                        (peer->first() == reference->first() && peer->certain() > reference->certain());
+    if (better) reference = peer.get();
   }
   endings(peers);
   if (reference == nullptr) {
@@ -183,7 +224,7 @@ MatchReport Oracle::judge(const MatchOptions& options, const Oracle::Peers& peer
   detector(options, peers, plantedSeat, plantedTick);
   inputs(peers, *reference);
   progress(options, peers);
-  count(peers, *reference);
+  count(options, peers, *reference);
   return report_;
 }
 

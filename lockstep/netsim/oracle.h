@@ -24,9 +24,11 @@ class Oracle {
   void states(const Peers& peers, const Peer& reference);
   void inputs(const Peers& peers, const Peer& reference);
   void detector(const MatchOptions& options, const Peers& peers, Seat plantedSeat, Tick plantedTick);
+  void liar(const Peers& peers, const Peer& planted, Tick from);
   void progress(const MatchOptions& options, const Peers& peers);
   void endings(const Peers& peers);
-  void count(const Peers& peers, const Peer& reference);
+  static Tick endOf(const Peers& peers, std::size_t index, const Peer& reference);
+  void count(const MatchOptions& options, const Peers& peers, const Peer& reference);
 
   std::uint32_t excused_ = 0;
   MatchReport report_;

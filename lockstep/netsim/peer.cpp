@@ -37,13 +37,25 @@ std::uint64_t digest(const TickInputs& inputs) {
 }  // namespace
 
 Peer::Peer(const SessionSettings& settings, const MatchOptions& options, Network& network, std::uint64_t seed)
-    : seat_(settings.localSeat), network_(network), random_(seed), game_(options.makeGame()) {
+    : seat_(settings.localSeat),
+      node_(settings.localSeat),
+      network_(network),
+      seal_(settings.match, settings.localSeat),
+      random_(seed),
+      // Every fourth match is one of the largest world.
+      game_(options.makeGame(options.seed % 4 == 0 ? kMaxPlayers : settings.maxPlayers)) {
   Game game;
   game.data = this;
   game.save = [](std::uint32_t slot, void* data) { static_cast<Peer*>(data)->save(slot); };
   game.load = [](std::uint32_t slot, void* data) { static_cast<Peer*>(data)->load(slot); };
   game.step = [](const TickInputs& inputs, void* data) { static_cast<Peer*>(data)->step(inputs); };
-  game.hash = [](void* data) { return static_cast<Peer*>(data)->game_->hash(); };
+  game.hash = [](void* data) { return static_cast<Peer*>(data)->toldHash(); };
+  game.write = [](std::uint32_t slot, std::span<std::uint8_t> into, void* data) {
+    return static_cast<Peer*>(data)->write(slot, into);
+  };
+  game.read = [](std::span<const std::uint8_t> bytes, void* data) {
+    return static_cast<Peer*>(data)->read(bytes);
+  };
   if (game_->values() != nullptr) {
     game.valueHashes = [](std::uint32_t slot, std::span<std::uint64_t> into, void* data) {
       const Game* inner = static_cast<Peer*>(data)->game_->values();
@@ -58,18 +70,22 @@ Peer::Peer(const SessionSettings& settings, const MatchOptions& options, Network
   transport.data = this;
   transport.send = [](Address to, std::span<const std::uint8_t> bytes, void* data) {
     auto* self = static_cast<Peer*>(data);
-    self->network_.send(self->seat_, to, bytes, self->sending_);
+    std::array<std::uint8_t, kMaxDatagram> sealed;
+    self->seal_.close(bytes, sealed);
+    self->network_.send(self->node_, self->seal_.nodeOf(to),
+                        std::span(sealed).first(bytes.size() + Seal::kBytes), self->sending_);
   };
   transport.receive = [](Address& from, std::span<std::uint8_t> into, void* data) {
     auto* self = static_cast<Peer*>(data);
-    auto& box = self->network_.inbox(self->seat_);
-    if (box.empty()) return std::uint32_t{0};
-    const auto size = static_cast<std::uint32_t>(box.front().bytes.size());
-    std::memcpy(into.data(), box.front().bytes.data(), size);
-    from = box.front().from;
-    box.pop_front();
+    auto& box = self->network_.inbox(self->node_);
+    std::uint32_t size = 0;
+    while (size == 0 && !box.empty()) {
+      size = self->seal_.open(box.front(), from, into);
+      box.pop_front();
+    }
     return size;
   };
+  if (settings.joins) first_ = start_ = kNever;
   session_ = std::make_unique<Session>(settings, game, transport);
   slots_.resize(kSaveSlots + kKeepSlots);
 }
@@ -90,6 +106,28 @@ void Peer::load(std::uint32_t slot) {
     planted_ = Planted::none;
     game_->flip();
   }
+}
+
+/// The hash of the state, or what a liar says it is.
+std::uint64_t Peer::toldHash() {
+  const bool lies = planted_ == Planted::lies && at_ >= plantedTick_;
+  return game_->hash() ^ (lies ? 1 : 0);
+}
+
+/// The state's tick, then what the game writes.
+std::uint64_t Peer::write(std::uint32_t slot, std::span<std::uint8_t> into) {
+  const std::uint64_t size = 4 + game_->write(slot, into.subspan(std::min<std::size_t>(into.size(), 4)));
+  if (into.size() < size) return size;
+  bytesOf(slots_[slot], into.data());
+  if (lies_) into[size - 1] ^= 1;
+  return size;
+}
+
+bool Peer::read(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < 4 || !game_->read(bytes.subspan(4))) return false;
+  at_ = first_ = number(bytes);
+  records_.clear();
+  return true;
 }
 
 void Peer::step(const TickInputs& inputs) {
@@ -113,8 +151,8 @@ void Peer::step(const TickInputs& inputs) {
   if (planted_ == Planted::flip && inputs.tick == plantedTick_) game_->flip();
   record.state = game_->hash();
   ++at_;
-  records_.resize(std::max<std::size_t>(records_.size(), at_));
-  records_[inputs.tick] = record;
+  records_.resize(std::max<std::size_t>(records_.size(), at_ - first_));
+  records_[inputs.tick - first_] = record;
 }
 
 /// The player's hands.
@@ -137,7 +175,10 @@ void Peer::frame(Time now, bool quiet) {
   session_->frame(local(now), held);
   if (session_->state() == SessionState::running)
     certain_ = std::min(session_->confirmed(), session_->tick());
-  for (SessionEvent event; session_->next(event);) events_.push_back(event);
+  for (SessionEvent event; session_->next(event);) {
+    if (event.kind == SessionEvent::Kind::joined && event.seat == seat_) start_ = event.tick;
+    events_.push_back(event);
+  }
   // A frame of a clock that runs fast is shorter.
   const auto length = static_cast<std::int64_t>(kFrame * session_->frameLength() / 1000);
   next_ = now + static_cast<Time>(length - length * ppm_ / 1'000'000);

@@ -11,6 +11,7 @@
 
 #include "netsim/match.h"
 #include "netsim/network.h"
+#include "netsim/seal.h"
 
 namespace samestep::netsim {
 
@@ -31,6 +32,12 @@ class Peer {
   Peer(const Peer&) = delete;
 
   Session& session() const { return *session_; }
+  Seat seat() const { return seat_; }
+  Seal& seal() { return seal_; }
+  const Seal& seal() const { return seal_; }
+  /// Sends and receives at another node from now on.
+  void moveTo(Address node) { node_ = node; }
+  Address node() const { return node_; }
   /// Makes a frame, with what the player does, unless `quiet`.
   void frame(Time now, bool quiet);
   /// Time at which the next one is due.
@@ -45,12 +52,17 @@ class Peer {
     zero_ = zero;
   }
   void plant(Planted planted, Tick tick) {
+    if (planted == Planted::unsealed) seal_.breakOpen();
     planted_ = planted;
     plantedTick_ = tick;
   }
 
-  /// The ticks that are certain, oldest first.
-  const std::vector<TickRecord>& records() const { return records_; }
+  /// What was seen of a tick from first() on.
+  const TickRecord& record(Tick tick) const { return records_[tick - first_]; }
+  /// The tick of the state with which it began: a newcomer's is a later one.
+  Tick first() const { return first_; }
+  /// The tick of its own first input; kNever where it has not been let in.
+  Tick start() const { return start_; }
   Tick certain() const { return certain_; }
   EndReason ended() const { return session_->endReason(); }
   std::uint32_t commandsGiven() const { return commandsGiven_; }
@@ -60,16 +72,23 @@ class Peer {
   const char* flipped() const { return game_->flipped(); }
   /// The state that the game has is not what a sequence of loads and steps may lead to.
   bool misused() const { return misused_; }
+  /// It writes states that are not the ones it has.
+  void lie() { lies_ = true; }
 
  private:
   void save(std::uint32_t slot);
   void load(std::uint32_t slot);
   void step(const TickInputs& inputs);
+  std::uint64_t toldHash();
+  std::uint64_t write(std::uint32_t slot, std::span<std::uint8_t> into);
+  bool read(std::span<const std::uint8_t> bytes);
   void act();
   Time local(Time now) const;
 
   Seat seat_;
+  Address node_;
   Network& network_;
+  Seal seal_;
   Random random_;
   std::unique_ptr<SimGame> game_;
   std::unique_ptr<Session> session_;
@@ -80,8 +99,11 @@ class Peer {
   std::int32_t ppm_ = 0;
   bool crashed_ = false;
   bool misused_ = false;
+  bool lies_ = false;
   Tick at_ = 0;
   Tick certain_ = 0;
+  Tick first_ = 0;
+  Tick start_ = 0;
   std::vector<Tick> slots_;
   std::vector<TickRecord> records_;
   std::uint32_t heldGiven_ = 0;

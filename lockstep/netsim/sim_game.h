@@ -6,8 +6,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 namespace samestep::netsim {
+
+inline constexpr Tick kNever = 0xffffffffu;
 
 /// A game whose states the oracle compares.
 class SimGame {
@@ -17,6 +20,9 @@ class SimGame {
   virtual void load(std::uint32_t slot) = 0;
   virtual void step(const TickInputs& inputs) = 0;
   virtual std::uint64_t hash() = 0;
+  /// As Game::write and Game::read.
+  virtual std::uint64_t write(std::uint32_t slot, std::span<std::uint8_t> into) = 0;
+  virtual bool read(std::span<const std::uint8_t> bytes) = 0;
   /// Changes one bit of the state: a planted fault.
   virtual void flip() = 0;
   /// The game whose Game::valueHashes and Game::value tell the values of kept states; null if it has none.
@@ -26,8 +32,8 @@ class SimGame {
 };
 
 /// One integer, mixed with every input.
-std::unique_ptr<SimGame> makeIntegerGame();
-/// Physics: a Space in Fixed.
-std::unique_ptr<SimGame> makeArenaGame();
+std::unique_ptr<SimGame> makeIntegerGame(std::uint32_t players);
+/// Physics: a Space in Fixed, with room for so many players.
+std::unique_ptr<SimGame> makeArenaGame(std::uint32_t players);
 
 }  // namespace samestep::netsim

@@ -21,9 +21,13 @@ void put(PacketWriter& writer, const View& view) {
   for (Seat seat = 0; seat < kMaxPlayers; ++seat) {
     if ((view.dropped & bit(seat)) != 0) writer.u32(view.end[seat]);
   }
+  writer.u16(view.joined);
+  if (view.joined != 0) writer.u32(view.start);
 }
 
-View getView(PacketReader& reader) {
+}  // namespace
+
+View lockstep::getView(PacketReader& reader) {
   View view;
   view.voters = reader.u16();
   view.dropped = reader.u16();
@@ -31,24 +35,28 @@ View getView(PacketReader& reader) {
   for (Seat seat = 0; seat < kMaxPlayers; ++seat) {
     if ((view.dropped & bit(seat)) != 0) view.end[seat] = reader.u32();
   }
+  view.joined = reader.u16();
+  if (view.joined != 0) view.start = reader.u32();
+  if (count(view.joined) > 1 || (view.joined & ~view.voters) != 0) reader.fail();
   return view;
 }
 
-}  // namespace
-
 /// True if a seat was heard of late, and its inputs are not what is waited for.
 bool Session::Impl::delivers(Seat seat, std::uint64_t within) const {
-  return !remote(seat) || (now - links[seat].lastHeard <= within && now - links[seat].lastInput <= within);
+  return !remote(seat) || (!hasRestarted(seat) && now - links[seat].lastHeard <= within &&
+                           now - links[seat].lastInput <= within);
 }
 
-/// True if a view of others names only seats that vote now.
+/// True if a view of others names only seats that vote now, and whom it lets in a seat that is there and
+/// free.
 bool Session::Impl::withinVoters(const View& view) const {
-  return ((view.voters | view.dropped) & ~change.voters()) == 0;
+  const bool known = (((view.voters & ~view.joined) | view.dropped) & ~change.voters()) == 0;
+  return known && (view.joined & change.voters()) == 0 && view.joined >> seats == 0;
 }
 
 Session::Impl::SeatMask Session::Impl::suspected() const {
   SeatMask found = 0;
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     if (!delivers(seat, settings.dropAfter)) found |= bit(seat);
   }
   return static_cast<SeatMask>(found & live());
@@ -57,14 +65,18 @@ Session::Impl::SeatMask Session::Impl::suspected() const {
 /// Brings about a decision where one is needed.
 void Session::Impl::agree() {
   const SeatMask gone = suspected();
-  const bool needed = gone != 0 || (change.voters() & ~live()) != 0 || change.underWay();
+  const bool leaves = (change.voters() & ~live()) != 0 || change.underWay();
+  const bool admits = readyNewcomer() != kNoSeat;
+  const bool needed = gone != 0 || leaves || admits;
   if (!needed) changeSince = 0;
   if (!needed || (live() & bit(settings.localSeat)) == 0) return;
   if (changeSince == 0) changeSince = now;
   const std::uint64_t passed = now - changeSince;
-  if (passed > settings.endAfter && (gone | change.frozen()) != 0) return finish(EndReason::minority);
+  if ((gone | change.frozen()) == 0) goneSince = now;
+  if (now - std::max(goneSince, changeSince) > settings.endAfter) return finish(EndReason::minority);
   const SeatMask before = static_cast<SeatMask>(live() & ~gone & (bit(settings.localSeat) - 1));
-  const std::uint64_t turn = kTurn * static_cast<std::uint64_t>(count(before));
+  // Only who has sent it the state lets a newcomer in.
+  const std::uint64_t turn = gone == 0 && !leaves ? 0 : kTurn * static_cast<std::uint64_t>(count(before));
   if (passed < turn) return;
   if (proposedAt == 0 || now - proposedAt > kBallotLasts + turn) propose();
   if (change.proposing() && now - askedAt >= kAskEvery) askVoters();
@@ -74,10 +86,12 @@ void Session::Impl::propose() {
   const SeatMask gone = suspected();
   const Seat self = settings.localSeat;
   proposedAt = now;
-  change.propose(self, static_cast<SeatMask>(live() & ~gone), gone);
-  change.promise(change.ballot(), gone);
+  const Seat newcomer = gone == 0 ? readyNewcomer() : kNoSeat;
+  const SeatMask joined = newcomer == kNoSeat ? SeatMask{0} : bit(newcomer);
+  change.propose(self, static_cast<SeatMask>(live() & ~gone), gone, joined, certain + kJoinLead);
+  change.promise(change.ballot(), gone, joined, change.start());
   ViewChange::Promise promise{change.ballot(), change.acceptedBallot(), change.accepted(), {}};
-  for (Seat seat = 0; seat < settings.players; ++seat) promise.end[seat] = streams[seat].end();
+  for (Seat seat = 0; seat < seats; ++seat) promise.end[seat] = streams[seat].end();
   change.promisedBy(self, promise);
   askVoters();
 }
@@ -91,7 +105,7 @@ void Session::Impl::askVoters() {
     if (!change.accept(change.ballot(), change.value())) return change.yield();
     if (change.acceptedBy(settings.localSeat, change.ballot())) return decide(View(change.value()));
   }
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     if (remote(seat) && (change.missing() & bit(seat)) != 0) askVoter(seat);
   }
 }
@@ -105,6 +119,8 @@ void Session::Impl::askVoter(Seat seat) {
     put(writer, change.value());
   } else {
     writer.u16(change.dropped());
+    writer.u16(change.joined());
+    writer.u32(change.start());
   }
   send(seat, writer);
 }
@@ -112,12 +128,16 @@ void Session::Impl::askVoter(Seat seat) {
 void Session::Impl::receivePrepare(Seat seat, PacketReader& reader) {
   const std::uint32_t ballot = reader.u32();
   const SeatMask dropped = reader.u16();
-  if (!reader.done() || (ballot & 15) != seat) return bad();
+  const SeatMask joined = reader.u16();
+  const Tick start = reader.u32();
+  if (!reader.done() || (ballot & 15) != seat || count(joined) > 1 || joined >> seats != 0) return bad();
+  if (joined != 0 && (dropped != 0 || start < certain || start > certain + 4 * kMaxLead)) return;
   // Nobody helps to drop itself, or whom it hears.
-  for (Seat gone = 0; gone < settings.players; ++gone) {
+  for (Seat gone = 0; gone < seats; ++gone) {
     if ((dropped & bit(gone)) != 0 && delivers(gone, settings.interruptedAfter)) return;
+    if ((joined & bit(gone)) != 0 && !mayAdmit(gone)) return;
   }
-  if (change.promise(ballot, dropped) && change.ballot() < ballot) {
+  if (change.promise(ballot, dropped, joined, start) && change.ballot() < ballot) {
     change.yield();
     proposedAt = now;
   }
@@ -141,7 +161,7 @@ void Session::Impl::receivePromise(Seat seat, PacketReader& reader) {
   promise.ballot = reader.u32();
   promise.acceptedBallot = reader.u32();
   if (promise.acceptedBallot != 0) promise.accepted = getView(reader);
-  for (Seat other = 0; other < settings.players; ++other) {
+  for (Seat other = 0; other < seats; ++other) {
     promise.end[other] = reader.u32();
     // Nobody can have so many.
     if (promise.end[other] > certain + 8 * kMaxLead) reader.fail();
@@ -163,6 +183,8 @@ void Session::Impl::receiveAccept(Seat seat, PacketReader& reader) {
   if ((view.dropped & bit(settings.localSeat)) != 0 || ballot < change.promised()) return;
   // All who stay have promised it: a value that nobody proposed is forged.
   if ((view.dropped & ~change.frozen()) != 0) return bad();
+  if ((view.joined & ~change.joining()) != 0 || (view.joined != 0 && view.start < change.barrier()))
+    return bad();
   // The proposer asks again.
   if (!haveAll(view) || !change.accept(ballot, view)) return;
   if (change.ballot() < ballot) change.yield();
@@ -209,7 +231,7 @@ void Session::Impl::receiveCommit(Seat seat, PacketReader& reader) {
 bool Session::Impl::vouched(Seat seat, const View& view) {
   vouchedFor[seat] = view;
   SeatMask same = 0;
-  for (Seat other = 0; other < settings.players; ++other) {
+  for (Seat other = 0; other < seats; ++other) {
     if (remote(other) && vouchedFor[other] == view) same |= bit(other);
   }
   return quorum(same, change.voters());
@@ -218,7 +240,7 @@ bool Session::Impl::vouched(Seat seat, const View& view) {
 /// Tells whether all inputs of those to be dropped are here; asks the others for what is not.
 bool Session::Impl::haveAll(const View& view) {
   bool all = true;
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     if ((view.dropped & bit(seat)) == 0 || streams[seat].end() >= view.end[seat]) continue;
     all = false;
     incomplete |= bit(seat);
@@ -235,13 +257,16 @@ void Session::Impl::decide(const View& view) {
   vouchedFor.fill({});
   // Inputs that were frozen may come now.
   for (Link& link : links) link.lastInput = now;
+  for (Seat seat = 0; seat < seats; ++seat) {
+    if ((view.joined & bit(seat)) != 0) admit(seat, view.start);
+  }
   changeSince = 0;
   proposedAt = 0;
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     if (remote(seat) && (known & bit(seat)) != 0) sendCommit(seat, viewNumber);
   }
   if ((view.dropped & bit(settings.localSeat)) != 0) return finish(EndReason::dropped);
-  for (Seat seat = 0; seat < settings.players && state == SessionState::running; ++seat) {
+  for (Seat seat = 0; seat < seats && state == SessionState::running; ++seat) {
     if ((view.dropped & bit(seat)) != 0) drop(seat, view.end[seat]);
   }
 }

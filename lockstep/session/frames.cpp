@@ -9,6 +9,7 @@ namespace samestep {
 using namespace lockstep;
 
 Frame Session::Impl::frame(std::span<const std::uint8_t> held) {
+  if (state == SessionState::joining) return frameJoining();
   if (state != SessionState::running) return Frame::idle;
   takeBackShown();
   rollBack();
@@ -16,7 +17,7 @@ Frame Session::Impl::frame(std::span<const std::uint8_t> held) {
   if (paused) return Frame::paused;
   produce(held);
   confirm();
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     if (remote(seat)) sendInputs(seat);
   }
   const bool steps = mayStep();
@@ -36,8 +37,11 @@ Frame Session::Impl::frame(std::span<const std::uint8_t> held) {
 
 /// Makes our inputs up to the one that is due, unless we have gone too far ahead of the others.
 void Session::Impl::produce(std::span<const std::uint8_t> held) {
-  const Tick due = current + settings.inputDelay;
-  while (own().end() <= due && own().end() < certain + kMaxLead && ends[settings.localSeat] == kNever) {
+  // Whoever is let in later sends its first inputs at once.
+  const Tick start = starts[settings.localSeat];
+  const Tick due = std::max(current, start) + settings.inputDelay;
+  const Tick most = std::max(certain, start) + kMaxLead;
+  while (own().end() <= due && own().end() < most && ends[settings.localSeat] == kNever) {
     const bool last = own().end() == due;
     // A longer delay leaves ticks to fill with what was held before.
     appendOwn(last ? held : own().heldBefore(own().end()));
@@ -55,8 +59,8 @@ void Session::Impl::appendOwn(std::span<const std::uint8_t> held) {
 }
 
 bool Session::Impl::complete(Tick tick) const {
-  for (Seat seat = 0; seat < settings.players; ++seat) {
-    if (tick < ends[seat] && tick >= streams[seat].end()) return false;
+  for (Seat seat = 0; seat < seats; ++seat) {
+    if (plays(seat, tick) && tick >= streams[seat].end()) return false;
   }
   return true;
 }
@@ -64,7 +68,9 @@ bool Session::Impl::complete(Tick tick) const {
 /// Counts the steps whose inputs are all known.
 void Session::Impl::confirm() {
   // Inputs that are to be stepped must not be pushed out of the streams.
-  while (certain < current + 2 * kMaxLead && complete(certain)) ++certain;
+  const Tick most = std::min(current + 2 * kMaxLead, change.barrier());
+  while (certain < most && complete(certain)) ++certain;
+  keepLog();
 }
 
 /// Goes back to before the first step that was made with a wrong input, and makes the steps again.
@@ -101,9 +107,9 @@ void Session::Impl::prepareStep() {
 
 void Session::Impl::step(Tick tick) {
   PlayerInput inputs[kMaxPlayers];
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     InputStream& stream = streams[seat];
-    if (tick >= ends[seat]) continue;
+    if (!plays(seat, tick)) continue;
     inputs[seat].present = true;
     if (stream.has(tick)) {
       const InputEntry entry = stream.at(tick);
@@ -118,7 +124,7 @@ void Session::Impl::step(Tick tick) {
       inputs[seat].held = stream.predicted(tick);
     }
   }
-  game.step({tick, {inputs, settings.players}}, game.data);
+  game.step({tick, {inputs, seats}}, game.data);
   ++stats.steps;
 }
 
@@ -181,8 +187,9 @@ void Session::Impl::publishHashes() {
     hashesUpTo = tick;
     if (kept.tick != tick) continue;
     hashes[settings.localSeat].of(tick, settings.hashInterval) = kept;
+    if (tick % keepInterval() == 0) keptHashes.of(tick, keepInterval()) = kept;
     any = true;
-    for (Seat seat = 0; seat < settings.players; ++seat) compareHash(seat, tick);
+    for (Seat seat = 0; seat < seats; ++seat) compareHash(seat, tick);
   }
   if (any) sendHashes();
 }
@@ -207,7 +214,7 @@ void Session::Impl::compareHash(Seat seat, Tick tick) {
 
 /// Smooths by how much each peer is behind.
 void Session::Impl::balance() {
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     Link& link = links[seat];
     const std::int32_t lag =
         (static_cast<std::int32_t>(current) - static_cast<std::int32_t>(link.tick)) * 256;

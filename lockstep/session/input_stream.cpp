@@ -125,6 +125,13 @@ void InputStream::reset(Tick first) {
   std::fill(records_.begin(), records_.end(), Record{});
 }
 
+void InputStream::skipTo(Tick first) {
+  for (Tick tick = std::max(end_, first - std::min(first, kCapacity)); tick < first; ++tick) {
+    records_[tick % kCapacity] = Record{};
+  }
+  end_ = std::max(end_, first);
+}
+
 InputEntry InputStream::at(Tick tick) const {
   expects(has(tick));
   const Record& record = records_[tick % kCapacity];

@@ -35,6 +35,8 @@ class InputStream {
 
   /// Forgets everything; the next input is that of `first`.
   void reset(Tick first);
+  /// Goes on with the input of `first`, after ticks that have none and count as inputs of nothing.
+  void skipTo(Tick first);
   Tick first() const { return first_; }
   /// The tick after the last input.
   Tick end() const { return end_; }

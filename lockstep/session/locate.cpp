@@ -49,7 +49,7 @@ Tick Session::Impl::keepInterval() const {
 
 /// Keeps the state of `current` where it is one of those that a difference is looked for in.
 void Session::Impl::keepState() {
-  if (!canLocate() || current % keepInterval() != 0) return;
+  if (!keepsStates() || current % keepInterval() != 0) return;
   const std::uint32_t place = current / keepInterval() % kKeepSlots;
   // A pinned state stays.
   if (locating.pinned != kNever && locating.pinned / keepInterval() % kKeepSlots == place) return;
@@ -207,14 +207,14 @@ void Session::Impl::receiveAnswer(Seat seat, PacketReader& reader) {
 /// Seats that told another hash for a tick than most did; none where none is told by more than half.
 Session::Impl::SeatMask Session::Impl::minorityAt(Tick tick) {
   SeatMask told = 0;
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     if (hashes[seat].of(tick, settings.hashInterval).tick == tick) told |= bit(seat);
   }
-  for (Seat most = 0; most < settings.players; ++most) {
+  for (Seat most = 0; most < seats; ++most) {
     if ((told & bit(most)) == 0) continue;
     const std::uint64_t hash = hashes[most].of(tick, settings.hashInterval).hash;
     SeatMask same = 0;
-    for (Seat seat = 0; seat < settings.players; ++seat) {
+    for (Seat seat = 0; seat < seats; ++seat) {
       const bool equal = (told & bit(seat)) != 0 && hashes[seat].of(tick, settings.hashInterval).hash == hash;
       if (equal) same |= bit(seat);
     }

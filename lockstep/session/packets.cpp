@@ -46,10 +46,12 @@ void Session::Impl::poll(std::uint64_t time) {
     receive(from, {bytes, size});
   }
   if (state == SessionState::ended) return;
+  if (state == SessionState::joining) return pollJoining();
   confirm();
   watchLinks();
   if (state == SessionState::running) {
     sendWants();
+    fetchRest();
     locate();
     agree();
     finishLeaving();
@@ -62,7 +64,7 @@ void Session::Impl::finishLeaving() {
   if ((live() & bit(self)) != 0) return;
   if (endsAt == 0) endsAt = now + settings.endAfter;
   bool known = (change.voters() & bit(self)) == 0 || live() == 0;
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     // A peer that has left as well may have all and be gone, or still lack our last input.
     const bool dropped = (change.voters() & bit(seat)) == 0;
     const bool gone = ends[seat] != kNever && now - links[seat].lastHeard > settings.goneAfter;
@@ -70,7 +72,7 @@ void Session::Impl::finishLeaving() {
   }
   if (!known && now < endsAt) return;
   // The others may wait to hear that we have theirs.
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     if (remote(seat)) sendInputs(seat);
   }
   finish(EndReason::left);
@@ -83,19 +85,30 @@ void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
   const std::uint8_t view = reader.u8();
   const auto type = static_cast<Packet>(first & 15);
   const Seat seat = first >> 4;
-  if (!reader.good() || type > Packet::answer || seat >= settings.players || !remote(seat) ||
-      settings.addresses[seat] != from || match != static_cast<std::uint8_t>(settings.match)) {
+  if (!reader.good() || seat >= seats || !remote(seat) || match != static_cast<std::uint8_t>(settings.match))
+    return bad();
+  const bool asks = type == Packet::hello || type == Packet::fetch;
+  if (asks && isFree(seat)) return receiveNewcomer(seat, from, type, reader);
+  if (addressOf(seat) != from) {
+    const bool joins =
+        type == Packet::hello && state == SessionState::running && (reader.u8() & kWantsToJoin) != 0;
+    if (joins && (live() & bit(seat)) != 0) refuse(from, Mismatch::seat);
     return bad();
   }
   Link& link = links[seat];
   if (type == Packet::hello) return receiveHello(seat, reader);
   if (type == Packet::refuse) {
     const std::uint8_t why = reader.u8();
-    if (state != SessionState::connecting || !reader.done()) return bad();
+    const bool begins = state == SessionState::connecting || state == SessionState::joining;
+    if (!begins || !reader.done()) return bad();
     tell({SessionEvent::Kind::refused, seat, why});
     return finish(EndReason::refused);
   }
-  if (!link.heard || state != SessionState::running) return;
+  // Whoever was let in may be the only one left who can say so.
+  const bool decided = type == Packet::commit && newcomers[seat].heard && state == SessionState::running;
+  if (!link.heard && !decided) return;
+  if (state == SessionState::joining) return receiveAsNewcomer(seat, type, reader);
+  if (state != SessionState::running) return;
   const auto behind = static_cast<std::int8_t>(static_cast<std::uint8_t>(viewNumber) - view);
   if (behind > 0 && now - link.lastCommit >= kCommitEvery) {
     link.lastCommit = now;
@@ -104,6 +117,9 @@ void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
   if (type == Packet::commit) return receiveCommit(seat, reader);
   // Inputs that the seat gave before it was dropped have their place in the decision.
   if (ends[seat] != kNever && (change.voters() & bit(seat)) == 0) return;
+  // Who has just been let in may ask for what it lacks.
+  if (type == Packet::fetch) return receiveFetch(seat, reader);
+  if (type == Packet::log && seat == joining.from) return receiveLog(reader);
   link.lastHeard = now;
   // Ballots of another decision mean nothing here.
   const bool decision = type >= Packet::prepare && type <= Packet::accepted;
@@ -133,6 +149,9 @@ void Session::Impl::receiveFrom(Seat seat, Packet type, PacketReader& reader) {
       return receiveAsk(seat, reader);
     case Packet::answer:
       return receiveAnswer(seat, reader);
+    case Packet::block:
+      // Of a state that is no more needed.
+      return;
     default:
       return bad();
   }
@@ -147,32 +166,42 @@ void Session::Impl::header(PacketWriter& writer, Packet type) const {
 
 void Session::Impl::send(Seat seat, const PacketWriter& writer) {
   links[seat].lastSent = now;
+  sendTo(settings.addresses[seat], writer);
+}
+
+void Session::Impl::sendTo(Address to, const PacketWriter& writer) {
   ++stats.sentPackets;
   stats.sentBytes += writer.size();
-  transport.send(settings.addresses[seat], writer.written(), transport.data);
+  transport.send(to, writer.written(), transport.data);
 }
 
 void Session::Impl::sendHello(Seat seat) {
   std::uint8_t bytes[64];
   PacketWriter writer(bytes);
+  writeHello(writer, links[seat].heard);
+  send(seat, writer);
+}
+
+void Session::Impl::writeHello(PacketWriter& writer, bool heard) const {
   header(writer, Packet::hello);
-  writer.u8(links[seat].heard ? 1 : 0);
+  writer.u8(static_cast<std::uint8_t>((heard ? kHearsYou : 0) |
+                                      (state == SessionState::joining ? kWantsToJoin : 0)));
   writer.u16(kProtocol);
   writer.u32(settings.match);
   writer.u8(settings.players);
+  writer.u8(seats);
   writer.u8(settings.maxHeldBytes);
   writer.u8(settings.maxCommandBytes);
   writer.u16(settings.hashInterval);
   writer.u32(settings.revision);
   writer.u64(settings.fingerprint);
   writer.u64(settings.content);
-  send(seat, writer);
 }
 
 /// The first thing in which a hello differs from ours.
 Mismatch Session::Impl::mismatch(PacketReader& reader) const {
   if (reader.u16() != kProtocol || reader.u32() != settings.match) return Mismatch::protocol;
-  if (reader.u8() != settings.players) return Mismatch::players;
+  if (reader.u8() != settings.players || reader.u8() != seats) return Mismatch::players;
   const bool sameBounds = reader.u8() == settings.maxHeldBytes && reader.u8() == settings.maxCommandBytes;
   if (!sameBounds || reader.u16() != settings.hashInterval) return Mismatch::settings;
   if (reader.u32() != settings.revision) return Mismatch::revision;
@@ -182,20 +211,19 @@ Mismatch Session::Impl::mismatch(PacketReader& reader) const {
 }
 
 void Session::Impl::receiveHello(Seat seat, PacketReader& reader) {
-  const bool hearsUs = reader.u8() != 0;
+  const std::uint8_t flags = reader.u8();
+  const bool hearsUs = (flags & kHearsYou) != 0;
   const Mismatch found = mismatch(reader);
   if (!reader.good()) return bad();
   if (found != Mismatch::none) {
     if (state != SessionState::connecting) return bad();
-    std::uint8_t bytes[16];
-    PacketWriter writer(bytes);
-    header(writer, Packet::refuse);
-    writer.u8(static_cast<std::uint8_t>(found));
-    send(seat, writer);
+    refuse(settings.addresses[seat], found);
     tell({SessionEvent::Kind::refused, seat, static_cast<std::uint8_t>(found)});
     return finish(EndReason::refused);
   }
+  if ((flags & kWantsToJoin) != 0) return receiveRestart(seat);
   links[seat].heard = true;
+  links[seat].lastHeard = now;
   links[seat].hearsUs |= hearsUs;
   if (!hearsUs) sendHello(seat);
   if (state != SessionState::connecting) return;
@@ -215,7 +243,8 @@ void Session::Impl::sendInputs(Seat seat) {
   header(writer, Packet::inputs);
   writer.u16(static_cast<std::uint16_t>(link.acked));
   writer.u16(static_cast<std::uint16_t>(streams[seat].end()));
-  writer.u8(static_cast<std::uint8_t>(current - link.acked));
+  const auto ahead = static_cast<std::int32_t>(current - link.acked);
+  writer.u8(static_cast<std::uint8_t>(std::clamp(ahead, -128, 127)));
   const std::int32_t lag = std::clamp(link.lagHere / 128, -64, 63) + 64;
   writer.u8(static_cast<std::uint8_t>(lag | (paused ? kPaused : 0)));
   // A peer that goes on without saying that ours came cannot be told them for ever.
@@ -245,8 +274,7 @@ void Session::Impl::receiveInputs(Seat seat, PacketReader& reader) {
     }
   }
   if ((change.frozen() & bit(seat)) != 0) return;
-  const Tick limit = std::min(ends[seat], certain + 2 * kMaxLead);
-  if (!decodeEntries(reader, streams[seat], base, limit, wrong)) bad();
+  if (!decodeEntries(reader, streams[seat], base, inputLimit(seat), wrong)) bad();
   takeControls(seat);
 }
 
@@ -276,7 +304,7 @@ void Session::Impl::sendHashes() {
     if (kept.tick != tick) break;
     writer.u64(kept.hash);
   }
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     if (remote(seat) && ends[seat] == kNever) send(seat, writer);
   }
 }
@@ -298,19 +326,19 @@ void Session::Impl::receiveHashes(Seat seat, PacketReader& reader) {
 
 /// Asks for the inputs of dropped seats that the others have.
 void Session::Impl::sendWants() {
-  for (Seat gone = 0; gone < settings.players; ++gone) {
+  for (Seat gone = 0; gone < seats; ++gone) {
     if (streams[gone].end() >= backfillTo[gone]) incomplete &= static_cast<SeatMask>(~bit(gone));
   }
   if (incomplete == 0 || now - wantedAt < kWantEvery) return;
   wantedAt = now;
-  for (Seat gone = 0; gone < settings.players; ++gone) {
+  for (Seat gone = 0; gone < seats; ++gone) {
     if ((incomplete & bit(gone)) == 0) continue;
     std::uint8_t bytes[16];
     PacketWriter writer(bytes);
     header(writer, Packet::want);
     writer.u8(gone);
     writer.u32(streams[gone].end());
-    for (Seat seat = 0; seat < settings.players; ++seat) {
+    for (Seat seat = 0; seat < seats; ++seat) {
       if (remote(seat) && seat != gone && (change.voters() & bit(seat)) != 0) send(seat, writer);
     }
   }
@@ -319,7 +347,7 @@ void Session::Impl::sendWants() {
 void Session::Impl::receiveWant(Seat seat, PacketReader& reader) {
   const Seat gone = reader.u8();
   const Tick from = reader.u32();
-  if (!reader.done() || gone >= settings.players) return bad();
+  if (!reader.done() || gone >= seats) return bad();
   const InputStream& stream = streams[gone];
   const bool stands = ends[gone] != kNever || (change.frozen() & bit(gone)) != 0;
   if (!stands || !stream.has(from)) return;
@@ -335,17 +363,18 @@ void Session::Impl::receiveWant(Seat seat, PacketReader& reader) {
 void Session::Impl::receiveBackfill(PacketReader& reader) {
   const Seat gone = reader.u8();
   const Tick base = reader.u32();
-  if (!reader.good() || gone >= settings.players) return bad();
+  if (!reader.good() || gone >= seats) return bad();
   if ((incomplete & bit(gone)) == 0) return;
   if (!decodeEntries(reader, streams[gone], base, std::min(ends[gone], backfillTo[gone]), wrong)) bad();
 }
 
 /// Says again what may have been lost, and notices who is silent.
 void Session::Impl::watchLinks() {
-  for (Seat seat = 0; seat < settings.players; ++seat) {
+  for (Seat seat = 0; seat < seats; ++seat) {
     Link& link = links[seat];
     if (!remote(seat)) continue;
     if (state == SessionState::connecting) {
+      if (seat >= settings.players) continue;
       if (link.lastSent == 0 || now - link.lastSent >= kHelloEvery) sendHello(seat);
       continue;
     }

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 
+#include "session/is_taken.h"
 #include "session/mix.h"
 
 namespace samestep {
@@ -20,6 +21,10 @@ namespace samestep {
 using lockstep::mix;
 
 namespace {
+
+/// What values of an OwnState are told as.
+constexpr const char* kOwnState = "own state";
+constexpr std::uint64_t kOwnValue = 0x6f776e;
 
 /// Cuts a text to fit.
 void put(const std::string& text, std::span<char> into) {
@@ -41,7 +46,7 @@ struct SpaceGame<S>::Impl {
 
   void save(std::uint32_t slot) {
     space.save(saved[slot]);
-    if (own.save != nullptr && slot < kSaveSlots) own.save(slot, own.data);
+    if (own.save != nullptr && (slot < kSaveSlots || own.write != nullptr)) own.save(slot, own.data);
   }
   void load(std::uint32_t slot) {
     space.restore(saved[slot]);
@@ -53,6 +58,8 @@ struct SpaceGame<S>::Impl {
       space.step(timeStep);
       return;
     }
+    if (recordsFromNext) recordedFrom = inputs.tick;
+    recordsFromNext = false;
     recorder->input({inputBytes.data(), encodeInputs(inputs, inputBytes)});
     recorder->step();
   }
@@ -70,24 +77,100 @@ struct SpaceGame<S>::Impl {
   }
   bool difference(std::uint32_t slotA, std::uint32_t slotB, std::span<char> text) const {
     const auto found = differences(saved[slotA].state(), saved[slotB].state(), 1);
-    if (found.empty()) return false;
-    const FieldDifference& first = found.front();
-    const std::string line = first.object + ", " + first.field + ": " + first.a + " and " + first.b;
-    if (text.empty()) return true;
-    put(line, text);
+    std::string line;
+    if (!found.empty()) {
+      const FieldDifference& first = found.front();
+      line = first.object + ", " + first.field + ": " + first.a + " and " + first.b;
+    } else {
+      line = ownDifference(slotA, slotB);
+    }
+    if (line.empty()) return false;
+    if (!text.empty()) put(line, text);
     return true;
+  }
+
+  /// What was saved of the OwnState, as bytes; none where it does not write any.
+  std::vector<std::uint8_t> ownBytes(std::uint32_t slot) const {
+    if (own.write == nullptr) return {};
+    std::vector<std::uint8_t> bytes(own.write(slot, {}, own.data));
+    own.write(slot, bytes, own.data);
+    return bytes;
+  }
+  std::string ownName(std::uint64_t byte) const {
+    std::array<char, sizeof(GameValue::field)> name{};
+    if (own.name != nullptr) own.name(byte, name, own.data);
+    name.back() = 0;
+    return name.front() != 0 ? std::string(name.data()) : "byte " + std::to_string(byte);
+  }
+  std::string ownDifference(std::uint32_t slotA, std::uint32_t slotB) const {
+    const auto a = ownBytes(slotA);
+    const auto b = ownBytes(slotB);
+    const auto at =
+        static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
+    if (at == a.size() && at == b.size()) return {};
+    return std::string(kOwnState) + ", " + ownName(at) + ": " + valueOf(a, at) + " and " + valueOf(b, at);
+  }
+  static std::string valueOf(const std::vector<std::uint8_t>& bytes, std::size_t at) {
+    return at < bytes.size() ? std::to_string(bytes[at]) : "none";
   }
 
   std::uint32_t valueHashesOf(std::uint32_t slot, std::span<std::uint64_t> into) const {
     const std::vector<std::uint64_t> hashes = valueHashes(saved[slot].state());
-    if (into.size() >= hashes.size()) std::copy(hashes.begin(), hashes.end(), into.begin());
-    return static_cast<std::uint32_t>(hashes.size());
+    const std::vector<std::uint8_t> bytes = ownBytes(slot);
+    if (into.size() >= hashes.size() + bytes.size()) {
+      auto to = std::copy(hashes.begin(), hashes.end(), into.begin());
+      for (std::size_t i = 0; i < bytes.size(); ++i) *to++ = mix(mix(kOwnValue, i), bytes[i]);
+    }
+    return static_cast<std::uint32_t>(hashes.size() + bytes.size());
   }
   void valueOf(std::uint32_t slot, std::uint32_t index, GameValue& into) const {
+    const std::size_t ofSpace = own.write == nullptr ? index + 1u : valueHashes(saved[slot].state()).size();
+    if (index >= ofSpace) {
+      put(kOwnState, into.object);
+      put(ownName(index - ofSpace), into.field);
+      put(valueOf(ownBytes(slot), index - ofSpace), into.text);
+      return;
+    }
     const WorldValue value = valueAt(saved[slot].state(), index);
     put(value.object, into.object);
     put(value.field, into.field);
     put(value.value, into.text);
+  }
+
+  /// The length of the world, then the world, then the OwnState.
+  std::uint64_t write(std::uint32_t slot, std::span<std::uint8_t> into) const {
+    const std::uint64_t world = encodeWorld(saved[slot].state(), std::span<std::uint8_t>());
+    const std::uint64_t beside = own.write == nullptr ? 0 : own.write(slot, {}, own.data);
+    const std::uint64_t all = 8 + world + beside;
+    if (into.size() < all) return all;
+    for (unsigned i = 0; i < 8; ++i) into[i] = static_cast<std::uint8_t>(world >> (8 * i));
+    encodeWorld(saved[slot].state(), into.subspan(8, world));
+    if (own.write != nullptr) own.write(slot, into.subspan(8 + world, beside), own.data);
+    return all;
+  }
+  /// @throws as decodeWorld
+  void read(std::span<const std::uint8_t> bytes) {
+    std::uint64_t world = 0;
+    for (unsigned i = 0; i < 8 && i < bytes.size(); ++i) world |= std::uint64_t{bytes[i]} << (8 * i);
+    const bool fits = bytes.size() >= 8 && world <= bytes.size() - 8;
+    require<Fault::MalformedBytes>(fits, "These bytes are not the state of a game.");
+    const auto beside = bytes.subspan(8 + world);
+    std::uint64_t offset = 0;
+    WorldState<S> state = decodeWorld<S>(bytes.subspan(8, world), offset);
+    require<Fault::MalformedBytes>(offset == world && (own.write != nullptr || beside.empty()),
+                                   "These bytes are not the state of a game.");
+    if (own.read != nullptr) {
+      require<Fault::MalformedBytes>(own.read(beside, own.data),
+                                     "These bytes are not what the game keeps beside its Space.");
+    }
+    // What was recorded of the world before is not of this match.
+    const bool records = recorder.has_value();
+    recorder.reset();
+    space.adopt(std::move(state));
+    if (!records) return;
+    recording->resize(recordingStart);
+    recorder.emplace(space, timeStep, *recording, wiring());
+    recordsFromNext = true;
   }
 
   Space<S>& space;
@@ -97,6 +180,10 @@ struct SpaceGame<S>::Impl {
   OwnState own;
   std::array<SavedSpace<S>, kSaveSlots + kKeepSlots> saved;
   std::optional<Recorder<S>> recorder;
+  std::vector<std::uint8_t>* recording = nullptr;  ///< Of which ours begins at recordingStart.
+  std::size_t recordingStart = 0;
+  Tick recordedFrom = 0;
+  bool recordsFromNext = false;
   std::array<std::uint8_t, kMaxInputsBytes> inputBytes{};
 };
 
@@ -107,7 +194,10 @@ SpaceGame<S>::SpaceGame(Space<S>& space, S timeStep, ApplyInputs apply, void* da
   const bool all = own.save != nullptr && own.load != nullptr && own.hash != nullptr;
   const bool none = own.save == nullptr && own.load == nullptr && own.hash == nullptr;
   require<Fault::ValueOutOfRange>(all || none, "An OwnState has all of its functions, or none.");
-  impl_ = new Impl{space, timeStep, apply, data, own, {}, {}, {}};
+  require<Fault::ValueOutOfRange>(
+      (own.write == nullptr) == (own.read == nullptr) && (all || own.write == nullptr),
+      "An OwnState writes and reads, or neither.");
+  impl_ = new Impl{space, timeStep, apply, data, own, {}, {}};
 }
 
 template <Scalar S>
@@ -132,6 +222,14 @@ Game SpaceGame<S>::functions() {
   game.value = [](std::uint32_t slot, std::uint32_t index, GameValue& into, void* data) {
     Impl::self(data).valueOf(slot, index, into);
   };
+  // Without what is kept beside it, a world is not the game.
+  if (impl_->own.save != nullptr && impl_->own.write == nullptr) return game;
+  game.write = [](std::uint32_t slot, std::span<std::uint8_t> into, void* data) {
+    return Impl::self(data).write(slot, into);
+  };
+  game.read = [](std::span<const std::uint8_t> bytes, void* data) {
+    return lockstep::isTaken([&] { Impl::self(data).read(bytes); });
+  };
   return game;
 }
 
@@ -146,26 +244,30 @@ template <Scalar S>
 bool SpaceGame<S>::snapshot(const Session& session, Tick& tick, std::vector<std::uint8_t>& bytes) const {
   std::uint32_t slot = 0;
   if (!session.certainState(tick, slot)) return false;
-  bytes.clear();
-  encodeWorld(impl_->saved[slot].state(), bytes);
+  bytes.resize(impl_->write(slot, {}));
+  impl_->write(slot, bytes);
   return true;
 }
 
 template <Scalar S>
 void SpaceGame<S>::load(std::span<const std::uint8_t> bytes) {
-  std::uint64_t offset = 0;
-  impl_->space.adopt(decodeWorld<S>(bytes, offset));
+  impl_->read(bytes);
 }
 
 template <Scalar S>
 void SpaceGame<S>::record(std::vector<std::uint8_t>& bytes) {
+  impl_->recording = &bytes;
+  impl_->recordingStart = bytes.size();
+  impl_->recordedFrom = 0;
   impl_->recorder.emplace(impl_->space, impl_->timeStep, bytes, impl_->wiring());
 }
 
 template <Scalar S>
 void SpaceGame<S>::finishRecording(Tick ticks) {
   require<Fault::ValueOutOfRange>(impl_->recorder.has_value(), "This game is not recorded.");
-  impl_->recorder->finish(ticks);
+  require<Fault::ValueOutOfRange>(ticks >= impl_->recordedFrom,
+                                  "This game is recorded from a later tick on.");
+  impl_->recorder->finish(ticks - impl_->recordedFrom);
   impl_->recorder.reset();
 }
 

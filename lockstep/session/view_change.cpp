@@ -19,9 +19,12 @@ void ViewChange::begin(SeatMask voters) {
   voters_ = voters;
 }
 
-bool ViewChange::promise(std::uint32_t ballot, SeatMask dropped) {
+bool ViewChange::promise(std::uint32_t ballot, SeatMask dropped, SeatMask joined, Tick start) {
   if (ballot < promised_) return false;
   promised_ = ballot;
+  // Any of these ballots may still be the one that is decided.
+  joining_ |= joined;
+  if (joined != 0) barrier_ = std::min(barrier_, start);
   // Frozen is who was in any ballot: the proposer of that one may still be heard.
   frozen_ |= dropped;
   return true;
@@ -36,14 +39,16 @@ bool ViewChange::accept(std::uint32_t ballot, const View& view) {
   return true;
 }
 
-void ViewChange::propose(Seat self, SeatMask stay, SeatMask dropped) {
+void ViewChange::propose(Seat self, SeatMask stay, SeatMask dropped, SeatMask joined, Tick start) {
   ballot_ = ((std::max(promised_, ballot_) >> 4) + 1) << 4 | self;
   stay_ = stay;
   dropped_ = dropped;
+  joined_ = joined;
+  start_ = start;
   promises_ = 0;
   accepts_ = 0;
   best_ = 0;
-  value_ = {stay, dropped, {}};
+  value_ = {static_cast<SeatMask>(stay | joined), dropped, {}, joined, joined == 0 ? 0 : start};
 }
 
 SeatMask ViewChange::missing() const {

@@ -7,30 +7,15 @@
 #include <cstring>
 
 #include "session/byte_io.h"
+#include "session/is_taken.h"
 
 namespace samestep {
 
+using lockstep::isTaken;
 using lockstep::PacketReader;
 using lockstep::PacketWriter;
 
 namespace {
-
-/// True if bytes from outside were taken by an action on them. A build without exceptions ends where they are
-/// refused.
-template <class Action>
-bool isTaken(Action&& action) {
-#if defined(__cpp_exceptions)
-  try {
-    const FailuresAreCaught caught;
-    action();
-  } catch (const Error&) {
-    return false;
-  }
-#else
-  action();
-#endif
-  return true;
-}
 
 /// The first byte of a packet.
 enum class Kind : std::uint8_t {

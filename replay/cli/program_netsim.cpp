@@ -9,6 +9,8 @@
 namespace samestep::program {
 namespace {
 
+constexpr std::int64_t kShowEvery = 5000;
+
 using netsim::MatchOptions;
 using netsim::MatchReport;
 
@@ -58,6 +60,8 @@ netsim::Planted plantedNamed(const std::string& name) {
   if (name == "flip") return netsim::Planted::flip;
   if (name == "deaf") return netsim::Planted::deaf;
   if (name == "forgets") return netsim::Planted::forgets;
+  if (name == "lies") return netsim::Planted::lies;
+  if (name == "unsealed") return netsim::Planted::unsealed;
   return netsim::Planted::none;
 }
 
@@ -104,6 +108,12 @@ struct Sum {
     all.lost += report.lost;
     all.dropped += report.dropped;
     all.left += report.left;
+    all.joined += report.joined;
+    all.rejoined += report.rejoined;
+    all.refused += report.refused;
+    all.moved += report.moved;
+    all.forged += report.forged;
+    all.spoilt += report.spoilt;
     all.milliseconds += report.milliseconds;
     all.payload += report.payload;
     peerMilliseconds += report.milliseconds * report.peers;
@@ -111,18 +121,22 @@ struct Sum {
   }
   void print() const {
     const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-    std::printf(
-        "%llu matches, %llu failed; %llu s of play, %llu steps, %llu rollbacks (deepest %u), %llu frames "
-        "waited\n",
-        number(matches), number(failed), number(all.milliseconds / 1000), number(all.steps),
-        number(all.rollbacks), all.deepest, number(all.waited));
+    std::printf("%llu matches, %llu failed; %llu s of play\n", number(matches), number(failed),
+                number(all.milliseconds / 1000));
+    std::printf("steps: %llu, %llu rollbacks (deepest %u), %llu frames waited\n", number(all.steps),
+                number(all.rollbacks), all.deepest, number(all.waited));
+    std::printf("players: %u dropped, %u left, %u came to a match under way (%u of them back), %u moved\n",
+                all.dropped, all.left, all.joined, all.rejoined, all.moved);
     // IP and UDP take 28 bytes of each, and a seal 21.
     const std::uint64_t bytes = all.payload + (28 + 21) * all.datagrams;
     std::printf(
-        "%llu datagrams, %llu lost; %llu bytes a second sent by each peer, with seals, IP and UDP; %u peers "
-        "dropped, %u left\n",
-        number(all.datagrams), number(all.lost),
-        number(bytes * 1000 / std::max<std::uint64_t>(peerMilliseconds, 1)), all.dropped, all.left);
+        "datagrams: %llu, %llu lost, %llu changed on the way, %llu dropped for their seal; %llu bytes a "
+        "second "
+        "sent by each peer, with seals, IP and UDP\n",
+        number(all.datagrams), number(all.lost), number(all.spoilt), number(all.forged),
+        number(bytes * 1000 / std::max<std::uint64_t>(peerMilliseconds, 1)));
+    std::printf("liars: %u states were sent to newcomers that are not the match's, and not believed\n",
+                all.refused);
     std::printf("trace %s\n", hex(all.trace).c_str());
   }
 };
@@ -137,7 +151,8 @@ int run(const Options& asked) {
     faults |= fault;
   }
   Sum sum;
-  Progress progress("netsim", seeds.last - seeds.first + 1);
+  StatusLine status;
+  std::int64_t showAt = milliseconds() + kShowEvery;
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     MatchOptions options;
     options.seed = seed;
@@ -151,9 +166,13 @@ int run(const Options& asked) {
     const MatchReport report = netsim::runMatch(options);
     sum.add(report);
     if (!report.violations.empty()) tellFailure(options, report, asked);
-    progress.at(seed - seeds.first + 1);
+    if (milliseconds() < showAt) continue;
+    showAt = milliseconds() + kShowEvery;
+    status.show("netsim: " + std::to_string(sum.matches) + " of " +
+                std::to_string(seeds.last - seeds.first + 1) + " matches, " + std::to_string(sum.failed) +
+                " failed");
   }
-  progress.clear();
+  status.clear();
   sum.print();
   return sum.failed == 0 ? kGood : kMismatch;
 }
@@ -173,7 +192,7 @@ void addNetsim(CLI::App& app, int& result) {
   word->add_option(
           "--fault", options->faults,
           "What may go wrong: loss, partition, stall, crash, leave, change, drift, hostile, asymmetric, "
-          "all or none")
+          "join, rejoin, lie, corrupt, move, all or none")
       ->delimiter(',')
       ->capture_default_str();
   word->add_option("--delay", options->delay, "One way, ms, in place of what the seed has")
@@ -184,7 +203,7 @@ void addNetsim(CLI::App& app, int& result) {
       ->check(CLI::IsMember({"arena", "integer"}))
       ->capture_default_str();
   word->add_option("--plant", options->planted, "Break one peer on purpose; the run must then fail")
-      ->check(CLI::IsMember({"none", "flip", "deaf", "forgets"}))
+      ->check(CLI::IsMember({"none", "flip", "deaf", "forgets", "lies", "unsealed"}))
       ->capture_default_str();
   word->add_flag("!--no-shrink", options->shrinks, "Do not look for a smaller match that fails as well");
   word->callback([options, &result] { result = run(*options); });

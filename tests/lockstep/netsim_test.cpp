@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "netsim/match.h"
 
+#include <algorithm>
 #include <bit>
 #include <numeric>
 
@@ -34,8 +35,13 @@ TEST_P(FaultTest, LeavesPeersTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(Netsim, FaultTest,
                          ::testing::Values(0, kLoss, kPartition, kStall, kCrash, kLeave, kChange, kDrift,
-                                           kHostile, kAsymmetric, kAllFaults),
-                         [](const auto& fault) { return faultNames(fault.param); });
+                                           kHostile, kAsymmetric, kJoin, kJoin | kLie, kCrash | kRejoin,
+                                           kCorrupt, kMove, kMove | kPartition, kAllFaults),
+                         [](const auto& fault) {
+                           std::string name = faultNames(fault.param);
+                           std::replace(name.begin(), name.end(), ',', '_');
+                           return name;
+                         });
 
 TEST(NetsimTest, PeersOfAPhysicsGameStayTheSame) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -77,12 +83,24 @@ TEST(NetsimTest, TheSeedsCoverRollbacksDropsAndLeaving) {
     sum.dropped += report.dropped;
     sum.left += report.left;
     sum.waited += report.waited;
+    sum.joined += report.joined;
+    sum.rejoined += report.rejoined;
+    sum.refused += report.refused;
+    sum.moved += report.moved;
+    sum.spoilt += report.spoilt;
+    sum.forged += report.forged;
   }
   EXPECT_GT(sum.rollbacks, 1000u);
   EXPECT_GE(sum.deepest, 8u);
   EXPECT_GT(sum.dropped, 2u);
   EXPECT_GT(sum.left, 2u);
   EXPECT_GT(sum.waited, 100u);
+  EXPECT_GT(sum.joined, 10u);
+  EXPECT_GT(sum.rejoined, 2u);
+  EXPECT_GT(sum.refused, 2u);
+  EXPECT_GT(sum.moved, 8u);
+  EXPECT_GT(sum.spoilt, 1000u);
+  EXPECT_GT(sum.forged, sum.spoilt / 2);
 }
 
 // Negative control: an oracle that cannot fail proves nothing.
@@ -100,6 +118,32 @@ TEST(NetsimTest, APlantedFaultIsCaughtByTheOracleAndByEveryPeer) {
   }
 }
 
+// Negative control: nothing but the seal keeps out what was changed on the way.
+TEST(NetsimTest, APeerWithoutASealIsCaught) {
+  int caught = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    MatchOptions open = options(seed, kCorrupt, 900);
+    open.planted = Planted::unsealed;
+    caught += runMatch(open).violations.empty() ? 0 : 1;
+  }
+  EXPECT_GE(caught, 4);
+}
+
+TEST(NetsimTest, WhoTellsOtherHashesThanItHasIsNamedByAll) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    MatchOptions lying = options(seed, kLoss, 600);
+    lying.planted = Planted::lies;
+
+    const MatchReport report = runMatch(lying);
+
+    // The states themselves are the same, and all play on.
+    ASSERT_EQ(report.violations.size(), 1u) << all(report);
+    EXPECT_THAT(report.violations[0], ::testing::HasSubstr("tells hashes of states that it does not have"));
+    EXPECT_EQ(report.desynced, (1u << lying.peers) - 1) << seed;
+    EXPECT_EQ(report.survivors, lying.peers);
+  }
+}
+
 TEST(NetsimTest, AGameThatComesBackWronglyFromALoadIsCaught) {
   int caught = 0;
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
@@ -112,7 +156,7 @@ TEST(NetsimTest, AGameThatComesBackWronglyFromALoadIsCaught) {
 }
 
 TEST(NetsimTest, AFailureIsShrunkToAMatchThatStillFails) {
-  MatchOptions broken = options(5, kAllFaults, 600);
+  MatchOptions broken = options(5, kAllFaults & ~(kCrash | kLeave | kStall | kPartition), 600);
   broken.planted = Planted::flip;
   ASSERT_FALSE(runMatch(broken).violations.empty());
 

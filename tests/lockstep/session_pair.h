@@ -23,16 +23,32 @@ class AddingGame {
     game.load = [](std::uint32_t slot, void* data) { self(data).sum = self(data).saved_[slot]; };
     game.step = [](const TickInputs& inputs, void* data) { self(data).step(inputs); };
     game.hash = [](void* data) { return self(data).sum; };
+    game.write = [](std::uint32_t slot, std::span<std::uint8_t> into, void* data) {
+      return self(data).write(slot, into);
+    };
+    game.read = [](std::span<const std::uint8_t> bytes, void* data) { return self(data).read(bytes); };
     return game;
   }
 
   std::uint64_t sum = 0;
   std::uint64_t present = 0;
+  /// It writes another state than the one that was saved.
+  bool lies = false;
   /// After each step, as it was made last.
   std::array<std::uint64_t, 4096> sums{};
 
  private:
   static AddingGame& self(void* data) { return *static_cast<AddingGame*>(data); }
+  std::uint64_t write(std::uint32_t slot, std::span<std::uint8_t> into) const {
+    const std::uint64_t told = saved_[slot] + (lies ? 1 : 0);
+    if (into.size() >= kBytes) std::memcpy(into.data(), &told, sizeof told);
+    return kBytes;
+  }
+  bool read(std::span<const std::uint8_t> bytes) {
+    if (bytes.size() != kBytes) return false;
+    std::memcpy(&sum, bytes.data(), sizeof sum);
+    return true;
+  }
   void step(const TickInputs& inputs) {
     present = 0;
     for (const PlayerInput& player : inputs.players) {
@@ -43,6 +59,8 @@ class AddingGame {
     sums[(inputs.tick + 1) % sums.size()] = sum;
   }
 
+  /// More than one block.
+  static constexpr std::uint64_t kBytes = 5000;
   std::array<std::uint64_t, 64> saved_{};
 };
 
@@ -124,6 +142,7 @@ class Table {
   void frame(std::uint8_t held = 0) {
     now += 16'667;
     for (Seat seat = 0; seat < sessions.size(); ++seat) {
+      if (sessions[seat] == nullptr) continue;
       const std::uint8_t byte = static_cast<std::uint8_t>(held + seat);
       frames[seat] = sessions[seat]->frame(now, {&byte, 1});
     }
@@ -134,14 +153,18 @@ class Table {
   /// Newest tick that all are certain of and have made.
   Tick common() const {
     Tick tick = 0xffffffffu;
-    for (const auto& session : sessions) tick = std::min({tick, session->tick(), session->confirmed()});
+    for (const auto& session : sessions) {
+      if (session != nullptr) tick = std::min({tick, session->tick(), session->confirmed()});
+    }
     return tick;
   }
   /// True if all had the same state at that tick.
   bool agree() const {
-    return std::all_of(games.begin(), games.end(), [this](const AddingGame& game) {
-      return game.sums[common() % game.sums.size()] == games[0].sums[common() % game.sums.size()];
-    });
+    for (Seat seat = 0; seat < sessions.size(); ++seat) {
+      const std::size_t at = common() % games[0].sums.size();
+      if (sessions[seat] != nullptr && games[seat].sums[at] != games[0].sums[at]) return false;
+    }
+    return true;
   }
   /// True if a seat has told an event of this kind that was not fetched yet.
   bool told(Seat seat, SessionEvent::Kind kind, SessionEvent& event) {
@@ -157,6 +180,7 @@ class Table {
 
   std::unique_ptr<Post> post = std::make_unique<Post>();
   std::vector<AddingGame> games;
+  /// Null: is gone.
   std::vector<std::unique_ptr<Session>> sessions;
   std::array<Frame, kMaxPlayers> frames{};
   std::uint64_t now = 1'000'000;

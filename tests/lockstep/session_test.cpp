@@ -209,7 +209,7 @@ TEST(SessionTest, APauseHoldsAllAndDropsNobody) {
 std::vector<std::uint8_t> commitOf(Seat from, std::uint8_t number, std::uint8_t voters) {
   const auto first = static_cast<std::uint8_t>(7 | from << 4);
   const auto view = static_cast<std::uint8_t>(number - 1);
-  return {first, 0, view, number, 0, 0, 0, voters, 0, 4, 0, 20, 0, 0, 0};
+  return {first, 0, view, number, 0, 0, 0, voters, 0, 4, 0, 20, 0, 0, 0, 0, 0};
 }
 
 TEST(SessionTest, ACommitThatOnePeerForgesIsRefused) {
@@ -243,9 +243,9 @@ TEST(SessionTest, WhoIsHeardIsNotDroppedBecauseOneAsks) {
   table.play(30);
   for (Seat to : {Seat{0}, Seat{3}}) {
     // Seat 1 asks to drop seat 2, and then says that all agreed.
-    table.post->put(1, to, std::vector<std::uint8_t>{3 | 16, 0, 0, 17, 0, 0, 0, 4, 0});
+    table.post->put(1, to, std::vector<std::uint8_t>{3 | 16, 0, 0, 17, 0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0});
     table.post->put(1, to,
-                    std::vector<std::uint8_t>{5 | 16, 0, 0, 17, 0, 0, 0, 0b1011, 0, 4, 0, 20, 0, 0, 0});
+                    std::vector<std::uint8_t>{5 | 16, 0, 0, 17, 0, 0, 0, 0b1011, 0, 4, 0, 20, 0, 0, 0, 0, 0});
     table.post->put(1, to, commitOf(1, 1, 0b1011));
   }
   table.play(300);

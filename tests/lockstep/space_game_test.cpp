@@ -3,10 +3,12 @@
 
 #include <samestep/circle_shape.h>
 #include <samestep/error.h>
+#include <samestep/sync_test.h>
 #include <samestep/verify.h>
 #include <samestep/version.h>
 
 #include <array>
+#include <cstring>
 
 #include <gtest/gtest.h>
 
@@ -32,6 +34,16 @@ struct Scored {
     own.save = [](std::uint32_t slot, void* data) { self(data).saved[slot] = self(data).score; };
     own.load = [](std::uint32_t slot, void* data) { self(data).score = self(data).saved[slot]; };
     own.hash = [](void* data) { return self(data).score; };
+    own.write = [](std::uint32_t slot, std::span<std::uint8_t> into, void* data) {
+      if (into.size() >= 8) std::memcpy(into.data(), &self(data).saved[slot], 8);
+      return std::uint64_t{8};
+    };
+    own.read = [](std::span<const std::uint8_t> bytes, void* data) {
+      if (bytes.size() != 8) return false;
+      std::memcpy(&self(data).score, bytes.data(), 8);
+      return true;
+    };
+    own.name = [](std::uint64_t, std::span<char> into, void*) { std::memcpy(into.data(), "score", 6); };
     return own;
   }
   static Scored& self(void* data) { return *static_cast<Scored*>(data); }
@@ -47,7 +59,7 @@ struct Scored {
   Space<Fixed> space;
   std::array<BodyId, 2> bodies{};
   std::uint64_t score = 0;
-  std::array<std::uint64_t, kSaveSlots> saved{};
+  std::array<std::uint64_t, kSaveSlots + kKeepSlots> saved{};
   SpaceGame<Fixed> game{space, ratio<Fixed>(1, 60), apply, this, own()};
 };
 
@@ -78,6 +90,114 @@ TEST(SpaceGameTest, PeersWithStateBesideTheirSpacesStayTheSame) {
   for (const auto& session : sessions) {
     while (session->next(event)) EXPECT_NE(event.kind, SessionEvent::Kind::desync);
   }
+}
+
+/// Two peers with a score, of which one may have vanished.
+struct ScoredMatch {
+  ScoredMatch() {
+    for (Seat seat = 0; seat < 2; ++seat) begin(seat, false);
+  }
+  void begin(Seat seat, bool joins) {
+    peers[seat] = std::make_unique<Scored>();
+    SessionSettings settings;
+    settings.localSeat = seat;
+    settings.addresses[1] = 1;
+    settings.hashInterval = 10;
+    settings.joins = joins;
+    peers[seat]->game.describe(settings);
+    sessions[seat] = std::make_unique<Session>(settings, peers[seat]->game.functions(), post.of(seat));
+  }
+  void play(int frames) {
+    for (int i = 0; i < frames; ++i) {
+      now += 16'667;
+      for (Seat seat = 0; seat < 2; ++seat) {
+        const std::uint8_t held = static_cast<std::uint8_t>(now / 99'000 + seat);
+        if (sessions[seat] != nullptr) sessions[seat]->frame(now, {&held, 1});
+      }
+    }
+  }
+
+  Post post;
+  std::array<std::unique_ptr<Scored>, 2> peers;
+  std::array<std::unique_ptr<Session>, 2> sessions;
+  std::uint64_t now = 0;
+};
+
+TEST(SpaceGameTest, WhatDiffersBesideTheSpaceIsNamed) {
+  ScoredMatch match;
+  match.play(60);
+  match.peers[1]->score += 3;
+  // In every state that it may go back to as well.
+  for (std::uint64_t& saved : match.peers[1]->saved) saved += 3;
+  match.play(200);
+
+  for (const auto& session : match.sessions) {
+    ASSERT_NE(session->desync(), nullptr);
+    const DesyncReport& report = *session->desync();
+    EXPECT_STREQ(report.ours.object, "own state");
+    EXPECT_STREQ(report.ours.field, "score");
+    EXPECT_STREQ(report.theirs.field, "score");
+    EXPECT_STRNE(report.ours.text, report.theirs.text);
+  }
+}
+
+TEST(SpaceGameTest, ASyncTestNamesWhatIsNotBroughtBackBesideTheSpace) {
+  Scored scored;
+  Game game = scored.game.functions();
+  game.load = [](std::uint32_t, void*) {};
+  SyncTest test(game);
+  const std::uint8_t held = 3;
+  const std::array<PlayerInput, 2> players{PlayerInput{true, {&held, 1}, {}},
+                                           PlayerInput{true, {&held, 1}, {}}};
+
+  // Where nothing moves, the score alone is another one.
+  Scored still;
+  Game resting = still.game.functions();
+  EXPECT_TRUE(resting.difference != nullptr);
+  resting.save(0, resting.data);
+  still.score += 1;
+  resting.save(1, resting.data);
+  std::array<char, 80> text{};
+  EXPECT_TRUE(resting.difference(0, 1, text, resting.data));
+  EXPECT_STREQ(text.data(), "own state, score: 0 and 1");
+  EXPECT_FALSE(test.frame(players));
+}
+
+TEST(SpaceGameTest, WhoComesBackHasTheWorldAndWhatIsBesideIt) {
+  ScoredMatch match;
+  match.play(100);
+  match.sessions[1].reset();
+  match.play(260);
+  match.begin(1, true);
+  std::vector<std::uint8_t> bytes;
+  match.peers[1]->game.record(bytes);
+  match.play(400);
+
+  ASSERT_EQ(match.sessions[1]->state(), SessionState::running);
+  EXPECT_EQ(match.sessions[0]->present(), 0b11);
+  for (const auto& session : match.sessions) EXPECT_EQ(session->desync(), nullptr);
+  EXPECT_GT(match.peers[1]->score, 0u);
+  const Tick to = std::min(match.sessions[1]->tick(), match.sessions[1]->confirmed());
+  match.peers[1]->game.finishRecording(to);
+  const VerifyResult result = verify<Fixed>(bytes, match.peers[1]->game.wiring());
+  EXPECT_TRUE(result.matches);
+  EXPECT_GT(result.ticks, 300u);
+  EXPECT_LT(result.ticks, to);
+}
+
+TEST(SpaceGameTest, BytesThatAreNoStateAreRefusedAndTheRestOfTheMatchGoesOn) {
+  Scored scored;
+  const Game game = scored.game.functions();
+  game.save(0, game.data);
+  std::vector<std::uint8_t> bytes(game.write(0, {}, game.data));
+  ASSERT_EQ(game.write(0, bytes, game.data), bytes.size());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_FALSE(game.read(std::span<const std::uint8_t>(bytes).first(size), game.data)) << size;
+  }
+  bytes.push_back(0);
+  EXPECT_FALSE(game.read(bytes, game.data));
+  bytes.pop_back();
+  EXPECT_TRUE(game.read(bytes, game.data));
 }
 
 TEST(SpaceGameTest, DescribesWorldTimeStepAndBuild) {

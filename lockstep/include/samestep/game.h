@@ -18,7 +18,7 @@ inline constexpr Seat kNoSeat = 0xff;
 inline constexpr std::uint8_t kMaxWindow = 16;
 /// Number of states a game keeps.
 inline constexpr std::uint32_t kSaveSlots = kMaxWindow + 2;
-/// And so many more, with the numbers from kSaveSlots on, if it can tell its values.
+/// And so many more, with the numbers from kSaveSlots on, if it can tell its values or write its state.
 inline constexpr std::uint32_t kKeepSlots = 4;
 
 /// Input of one player in one tick.
@@ -81,6 +81,14 @@ struct Game {
   std::uint32_t (*valueHashes)(std::uint32_t slot, std::span<std::uint64_t> into, void* data) = nullptr;
   /// The value with a number below that count.
   void (*value)(std::uint32_t slot, std::uint32_t index, GameValue& into, void* data) = nullptr;
+
+  /// For players that join a match under way; both may be null. A kept state as bytes, the same on every
+  /// machine.
+  /// @return how many there are; with room for all of them, they are written
+  std::uint64_t (*write)(std::uint32_t slot, std::span<std::uint8_t> into, void* data) = nullptr;
+  /// Brings in what another peer sent as such bytes, whatever they are.
+  /// @return false for bytes that are no state; the state is then any
+  bool (*read)(std::span<const std::uint8_t> bytes, void* data) = nullptr;
 };
 
 }  // namespace samestep

@@ -28,8 +28,13 @@ struct SessionSettings {
   /// Seats taken at the start, 2 to 16, and which of them is ours.
   std::uint8_t players = 2;
   Seat localSeat = 0;
-  /// Address of each seat in the transport.
+  /// Address of each seat in the transport. 0 for a seat from `players` on: whoever the transport lets in.
   Address addresses[kMaxPlayers] = {};
+  /// The most seats, `players` to 16, the same for all peers; 0: as many as `players`. The others may be
+  /// taken while the match is under way, and so may those of players that are gone.
+  std::uint8_t maxPlayers = 0;
+  /// Takes the local seat in a match that is under way, in place of starting one.
+  bool joins = false;
   /// Number of steps that may be made ahead of the last certain one, 0 to kMaxWindow. 0: pure lockstep, which
   /// neither predicts nor saves.
   std::uint8_t window = 8;
@@ -68,16 +73,18 @@ inline constexpr std::uint8_t kMaxRunAhead = 4;
 enum class SessionState : std::uint8_t {
   connecting,  ///< Some peers were not heard yet.
   running,
-  ended,  ///< The session is over for good; endReason() says why.
+  ended,    ///< The session is over for good; endReason() says why.
+  joining,  ///< The state of a match under way is on its way here.
 };
 
 enum class EndReason : std::uint8_t {
   none,
-  left,      ///< The seat went by leave().
-  refused,   ///< A peer has another build, game or settings.
-  dropped,   ///< The others went on without us.
-  minority,  ///< Most players are gone, and might play on together.
-  diverged,  ///< The others agreed on fewer inputs of a player than this peer has used for certain.
+  left,         ///< The seat went by leave().
+  refused,      ///< A peer has another build, game or settings.
+  dropped,      ///< The others went on without us.
+  minority,     ///< Most players are gone, and might play on together.
+  diverged,     ///< The others agreed on fewer inputs of a player than this peer has used for certain.
+  notAdmitted,  ///< No state came that most of the players vouch for.
 };
 const char* endReasonName(EndReason reason);
 
@@ -95,6 +102,8 @@ struct SessionEvent {
     desync,   ///< The states after `tick` steps differ: `local` here, `remote` at `seat`.
     located,  ///< The difference has been found: Session::desync().
     ended,
+    joined,  ///< `seat` plays from `tick` on.
+    lied,    ///< The state that `seat` sent is no state, or not the one that most players have.
   };
   Kind kind = Kind::started;
   Seat seat = kNoSeat;
@@ -125,7 +134,16 @@ struct DesyncReport {
 std::string desyncText(const DesyncReport& report);
 
 /// In what two peers differ that want to play together.
-enum class Mismatch : std::uint8_t { none, protocol, players, settings, revision, fingerprint, content };
+enum class Mismatch : std::uint8_t {
+  none,
+  protocol,
+  players,
+  settings,
+  revision,
+  fingerprint,
+  content,
+  seat,  ///< It is taken, or is another player's, or there are no players that could join this match.
+};
 
 /// Result of a frame.
 enum class Frame : std::uint8_t {
@@ -154,8 +172,11 @@ struct SessionStats {
 ///     each frame: session.frame(now, held);  while (session.next(event)) show(event);
 ///
 /// It reads no clock: `now` is in microseconds since any moment, and never goes back. After construction it
-/// takes no memory, but to look for the cause of a desync. All peers apply the same inputs in the same ticks
-/// and so, the game being deterministic, go through the same states.
+/// takes no memory, but to look for the cause of a desync and to send a newcomer the state. All peers apply
+/// the same inputs in the same ticks and so, the game being deterministic, go through the same states.
+///
+/// The functions of the game and of the transport must not call what changes the session: frame, poll,
+/// command, leave, pause and what begins with set throw SpaceLocked there.
 class Session {
  public:
   /// @throws ValueOutOfRange for settings outside their ranges or a game without a function
@@ -184,6 +205,10 @@ class Session {
   void setWindow(std::uint8_t ticks);
   void setRunAhead(std::uint8_t ticks);
   void setSaving(Saving saving);
+  /// Who may take a seat that is free, for instance a player that comes back by another address; ~0 for
+  /// whoever the transport lets in. A seat that is taken keeps its address.
+  /// @throws ValueOutOfRange for a seat that is not there
+  void setAddress(Seat seat, Address address);
   std::uint8_t inputDelay() const;
   std::uint8_t window() const;
 
