@@ -133,10 +133,10 @@ struct Pair {
     visit("a", self.a.index);
     visit("b", self.b.index);
     visit("localNormal", self.localNormal);
-    visit("rotationA", self.rotationA);
-    visit("rotationB", self.rotationB);
     visit("contact[0]", self.contacts[0]);
     visit("contact[1]", self.contacts[1]);
+    visit("rotationA", self.rotationA);
+    visit("rotationB", self.rotationB);
     visit("pose", self.pose);
     visit("collisionId", self.collisionId);
     visit("age", self.age);

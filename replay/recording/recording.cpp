@@ -229,7 +229,7 @@ RecordingReader<S>::RecordingReader(std::span<const std::uint8_t> bytes, const R
 template <Scalar S>
 void RecordingReader<S>::scanOldFormat(Scan& scan) {
   std::uint64_t offset = kWorldAt;
-  world_ = decodeWorld<S>(bytes_, offset, scan.limits);
+  world_ = decodeWorld<S>(bytes_, offset, scan.limits, worldFormat());
   ByteReader after(bytes_, offset);
   initialHash_ = CanonicalReader(after).next<std::uint64_t>();
   keyframes_.push_back({0, initialHash_, kWorldAt, after.offset() - kWorldAt, 0});
@@ -503,7 +503,7 @@ WorldState<S> RecordingReader<S>::world(std::size_t index, const WorldLimits& li
   WorldState<S> world;
   inSection(section.packed, section.at, [&] {
     offset += kKeyframeHeadBytes;
-    world = decodeWorld<S>(plain, offset, limits);
+    world = decodeWorld<S>(plain, offset, limits, worldFormat());
     if (offset != plain.size()) failFormat(offset, "something follows the world of a keyframe");
   });
   // The hash of the first world is compared by who replays it: a mismatch at tick 0.

@@ -83,7 +83,7 @@ namespace {
 /// Bytes that a Space takes at the worst for each pair, with all that belongs to its shapes.
 template <Scalar S>
 double mostBytesPerPair(SolverKind solver, ContactPrecision precision) {
-  if (solver == SolverKind::sequentialImpulses) return 1350;
+  if (solver == SolverKind::sequentialImpulses) return 1450;
   if (std::floating_point<S>) return 2800;
   return precision == ContactPrecision::fast ? 3300 : 2400;
 }

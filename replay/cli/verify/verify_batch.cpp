@@ -54,7 +54,7 @@ std::uint64_t workOf(const std::string& file) {
   if (error || !stream || size < head.size() + kTail) return error ? 0 : size;
   stream.seekg(-static_cast<std::streamoff>(kTail), std::ios::end);
   stream.read(reinterpret_cast<char*>(tail.data()), static_cast<std::streamsize>(tail.size()));
-  const bool ended = littleEndian(head, kVersionAt, 4) == kRecordingVersion &&
+  const bool ended = littleEndian(head, kVersionAt, 4) > kOldestRecordingVersion &&
                      tail[0] == static_cast<std::uint8_t>(SectionKind::end);
   if (!stream || !ended) return size;
   return std::min(littleEndian(tail, 5, 8), kMostTicks) * littleEndian(head, kWorldAt + 1, 4);

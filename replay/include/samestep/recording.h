@@ -15,7 +15,7 @@ namespace samestep {
 // needs nothing else to be replayed. docs/formats.md tells every byte.
 
 /// Version that a Recorder writes.
-inline constexpr std::uint32_t kRecordingVersion = 3;
+inline constexpr std::uint32_t kRecordingVersion = 4;
 /// Oldest version that readers still take.
 inline constexpr std::uint32_t kOldestRecordingVersion = 2;
 
@@ -161,6 +161,9 @@ class RecordingReader {
   void readOldEnd(class ByteReader& reader) const;
 
   std::span<const std::uint8_t> bytes_;
+  /// Format of the worlds in it, see decodeWorld.
+  std::uint32_t worldFormat() const { return version_ < 4 ? 1 : kWorldFormat; }
+
   std::uint32_t version_ = 0;
   S timeStep_{};
   WorldState<S> world_;

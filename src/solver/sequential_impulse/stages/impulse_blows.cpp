@@ -49,23 +49,65 @@ BouncePoint<S> pointOf(const ImpulseRow<S>& row) {
 }  // namespace
 
 template <Scalar S>
-void ImpulseBlows<S>::strike(StepContext<S>& step, const std::vector<std::uint32_t>& slots,
-                             ImpulseSolver<S>& solver) {
+void ImpulseBlows<S>::watch(const StepContext<S>& step, const std::vector<std::uint32_t>& slots,
+                            const ImpulseSolver<S>& solver) {
   slots_ = &slots;
-  restitution_.points.clear();
-  if (!find(step, solver)) return;
+  watched_ = std::any_of(solver.rows.begin(), solver.rows.end(), strikes<S>);
+  if (!watched_) return;
+  before_.clear();
+  for (const std::uint32_t slot : slots) {
+    const Body<S>& body = step.state.bodies.valueAt(slot);
+    before_.push_back({{body.velocity().x, body.velocity().y, body.angularVelocity()}});
+  }
+}
+
+template <Scalar S>
+void ImpulseBlows<S>::begin(const StepContext<S>& step, const ImpulseSolver<S>& solver) {
+  begin_ = solver;
+  find(step, solver);
+  sumEnergies(step, solver);
+  allowed_.assign(slots_->size(), {});
+  for (std::uint32_t i = 0; i < slots_->size(); ++i) addEnergy(step, i, before_[i].velocity, allowed_);
+  for (std::size_t i = 0; i < energies_.size(); ++i) allowed_[i] = max(allowed_[i], energies_[i]);
+}
+
+template <Scalar S>
+bool ImpulseBlows<S>::grew(std::uint32_t group) const {
+  return struck_[group] != 0 && sign(energies_[group] - allowed_[group] * toScaled(kMore<S>)) > 0;
+}
+
+template <Scalar S>
+bool ImpulseBlows<S>::strike(StepContext<S>& step, ImpulseSolver<S>& solver) {
+  sumEnergies(step, solver);
+  bool any = false;
+  for (std::uint32_t i = 0; i < slots_->size(); ++i) {
+    struck_[i] = grew(i) ? 1 : 0;
+    any = any || struck_[i] != 0;
+  }
+  if (!any) return false;
+  solver = begin_;
   take(step, solver);
   restitution_.markBouncing();
   restitution_.solve();
-  give(step, solver);
+  give(solver);
   const std::size_t points = restitution_.points.size();
   step.pay(Budget::kPerPairAndPass * Restitution<S>::passes(points) * points);
+  return true;
+}
+
+/// True if a contact gives energy without any blow: by a belt, or by a body that moves whatever touches it.
+template <Scalar S>
+bool ImpulseBlows<S>::isDriven(const StepContext<S>& step, const ImpulseRow<S>& row) const {
+  const auto moves = [&](std::uint32_t body) {
+    const Body<S>& of = step.state.bodies.valueAt((*slots_)[body]);
+    return !of.isDynamic() && (of.velocity() != Vector<S>() || of.angularVelocity() != S(0));
+  };
+  return row.surface != S(0) || moves(row.bodyA) || moves(row.bodyB);
 }
 
 /// Puts bodies together that contacts connect, and marks the groups in which an elastic contact is struck.
 template <Scalar S>
-bool ImpulseBlows<S>::find(const StepContext<S>& step, const ImpulseSolver<S>& solver) {
-  if (std::none_of(solver.rows.begin(), solver.rows.end(), strikes<S>)) return false;
+void ImpulseBlows<S>::find(const StepContext<S>& step, const ImpulseSolver<S>& solver) {
   group_.resize(slots_->size());
   std::iota(group_.begin(), group_.end(), 0u);
   const auto moves = [&](std::uint32_t body) {
@@ -80,7 +122,9 @@ bool ImpulseBlows<S>::find(const StepContext<S>& step, const ImpulseSolver<S>& s
   for (const ImpulseRow<S>& row : solver.rows) {
     if (strikes(row)) struck_[groupOf(row)] = 1;
   }
-  return true;
+  for (const ImpulseRow<S>& row : solver.rows) {
+    if (isDriven(step, row)) struck_[groupOf(row)] = 0;
+  }
 }
 
 template <Scalar S>
@@ -101,9 +145,7 @@ void ImpulseBlows<S>::take(const StepContext<S>& step, const ImpulseSolver<S>& s
   for (std::size_t i = 0; i < slots_->size(); ++i) {
     const Body<S>& from = step.state.bodies.valueAt((*slots_)[i]);
     BounceBody<S>& body = restitution_.bodies[i];
-    body.velocity[0] = from.velocity().x;
-    body.velocity[1] = from.velocity().y;
-    body.velocity[2] = from.angularVelocity();
+    std::copy(std::begin(before_[i].velocity), std::end(before_[i].velocity), std::begin(body.velocity));
     std::copy(std::begin(body.velocity), std::end(body.velocity), std::begin(body.before));
     if (!from.isDynamic()) continue;
     body.mass = from.mass();
@@ -126,7 +168,7 @@ void ImpulseBlows<S>::take(const StepContext<S>& step, const ImpulseSolver<S>& s
 
 /// Gives contacts and bodies what the blow made of them.
 template <Scalar S>
-void ImpulseBlows<S>::give(StepContext<S>& step, ImpulseSolver<S>& solver) {
+void ImpulseBlows<S>::give(ImpulseSolver<S>& solver) {
   for (const BouncePoint<S>& point : restitution_.points) {
     ImpulseRow<S>& row = solver.rows[point.block];
     const S(&a)[3] = restitution_.bodies[point.bodyA].velocity;
@@ -138,13 +180,14 @@ void ImpulseBlows<S>::give(StepContext<S>& step, ImpulseSolver<S>& solver) {
     const S rubbed = mulDiv(point.rubbed, row.tangentScale, row.tangentSpeedA + row.tangentSpeedB);
     row.struckTangent = clamp(rubbed, -kMaxSum<S>, kMaxSum<S>);
   }
-  allowed_.assign(slots_->size(), {});
   for (std::uint32_t i = 0; i < slots_->size(); ++i) {
-    const S(&to)[3] = restitution_.bodies[i].velocity;
-    addEnergy(step, i, to, allowed_);
     if (!restitution_.bounces(i)) continue;
-    Body<S>& body = step.state.bodies.valueAt((*slots_)[i]);
-    step.events.held[(*slots_)[i]] |= BodyAccess<S>::holdVelocity(body, {{to[0], to[1]}, to[2]});
+    const S(&from)[3] = before_[i].velocity;
+    const S(&to)[3] = restitution_.bodies[i].velocity;
+    ImpulseBody<S>& body = solver.bodies[i];
+    body.velocity = heldWithin(body.velocity + Vector<S>(to[0] - from[0], to[1] - from[1]), kMaxSpeed<S>);
+    body.angularVelocity =
+        clamp(body.angularVelocity + (to[2] - from[2]), -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
   }
 }
 
@@ -169,22 +212,8 @@ void ImpulseBlows<S>::sumEnergies(const StepContext<S>& step, const ImpulseSolve
 }
 
 template <Scalar S>
-void ImpulseBlows<S>::allow(const StepContext<S>& step, const ImpulseSolver<S>& solver) {
-  sumEnergies(step, solver);
-  for (std::size_t i = 0; i < energies_.size(); ++i) allowed_[i] = max(allowed_[i], energies_[i]);
-}
-
-template <Scalar S>
-void ImpulseBlows<S>::begin(const ImpulseSolver<S>& solver) {
-  begin_ = solver;
-}
-
-template <Scalar S>
 bool ImpulseBlows<S>::takeBack(const StepContext<S>& step, ImpulseSolver<S>& solver) {
   sumEnergies(step, solver);
-  const auto grew = [&](std::uint32_t group) {
-    return struck_[group] != 0 && sign(energies_[group] - allowed_[group] * toScaled(kMore<S>)) > 0;
-  };
   bool any = false;
   for (std::uint32_t i = 0; i < slots_->size(); ++i) any = any || grew(i);
   if (!any) return false;

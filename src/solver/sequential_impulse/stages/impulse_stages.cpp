@@ -53,17 +53,21 @@ void ImpulseStages<S>::prepare(StepContext<S>& step) {
     const std::uint32_t solverB = solverIndexOf(b);
     solver_.preStep(pair, solverA, solverB, bodies.valueAt(a), bodies.valueAt(b), slop, biasRate);
   }
-  blows_.strike(step, bodies_, solver_);
+  blows_.watch(step, bodies_, solver_);
 }
 
 template <Scalar S>
 void ImpulseStages<S>::solve(StepContext<S>& step) {
   takeBodies(step);
-  if (blows_.struck()) blows_.allow(step, solver_);
+  if (blows_.isWatched()) blows_.begin(step, solver_);
   warmStart(step);
-  if (blows_.struck()) blows_.begin(solver_);
   pass(step);
-  if (blows_.struck() && blows_.takeBack(step, solver_)) pass(step);
+  if (blows_.isWatched() && blows_.strike(step, solver_)) {
+    warmStart(step);
+    blows_.keep(solver_);
+    pass(step);
+    if (blows_.takeBack(step, solver_)) pass(step);
+  }
   storeImpulses(step);
   storeVelocities(step);
 }
