@@ -22,12 +22,12 @@ bool standsStill(const Body<S>& body) {
   return body.velocity() == Vector<S>() && body.angularVelocity() == S(0);
 }
 
-/// Whether steps leave both bodies of a pair alone.
+/// Tells whether steps leave both bodies of a pair alone. What a callback rouses wakes with the next one.
 template <Scalar S>
 bool bothRest(const StepContext<S>& step, const Pair<S>& pair) {
   const auto rests = [&](ShapeId shape) {
     const std::uint32_t body = step.derived.traits[shape.index].body;
-    return step.state.bodies.valueAt(body).activity() == Activity::asleep;
+    return step.state.bodies.valueAt(body).activity() != Activity::awake;
   };
   return rests(pair.a) && rests(pair.b);
 }
@@ -59,11 +59,19 @@ bool Islands<S>::isRoused(const StepContext<S>& step, std::uint32_t slot) {
   return mayRest && body.type() == BodyType::staticBody && body.activity() == Activity::awake;
 }
 
+/// Tells of a static body, which nothing moves, whether a force is to be taken from it.
+template <Scalar S>
+bool Islands<S>::isPulled(const StepContext<S>& step, std::uint32_t slot) {
+  if (!step.state.bodies.aliveAt(slot)) return false;
+  const Body<S>& body = step.state.bodies.valueAt(slot);
+  return body.type() == BodyType::staticBody && (body.force() != Vector<S>() || body.torque() != S(0));
+}
+
 template <Scalar S>
 bool Islands<S>::anyRoused(const StepContext<S>& step) {
   if (!step.derived.cached) return true;
   return std::any_of(step.derived.touched.begin(), step.derived.touched.end(),
-                     [&](std::uint32_t slot) { return isRoused(step, slot); });
+                     [&](std::uint32_t slot) { return isRoused(step, slot) || isPulled(step, slot); });
 }
 
 template <Scalar S>
@@ -88,9 +96,7 @@ void Islands<S>::noteRoused(StepContext<S>& step) {
   for (const std::uint32_t slot : step.derived.touched) {
     if (isRoused(step, slot)) roused_.push_back(slot);
     // No stage looks at a static body.
-    if (!step.state.bodies.aliveAt(slot)) continue;
-    Body<S>& body = step.state.bodies.valueAt(slot);
-    if (body.type() == BodyType::staticBody) BodyAccess<S>::clearForces(body);
+    if (isPulled(step, slot)) BodyAccess<S>::clearForces(step.state.bodies.valueAt(slot));
   }
   // total order: each is touched once
   std::sort(roused_.begin(), roused_.end());
@@ -314,10 +320,14 @@ void Islands<S>::findIslands(StepContext<S>& step) {
   for (const std::uint32_t slot : active) {
     const Body<S>& body = bodies.valueAt(slot);
     if (!body.isDynamic()) continue;
-    const bool ready = body.restTime() >= step.state.settings.sleepTimeThreshold && body.maySleep();
+    // What a callback has moved since contacts were solved is held by none of them.
+    const bool there = step.derived.poses[slot] == PlacedPose<S>::of(body);
+    const bool ready = body.restTime() >= step.state.settings.sleepTimeThreshold && body.maySleep() && there;
     const bool pulled =
         BodyAccess<S>::acceleration(body, step.state.settings.gravity).velocity != Vector<S>();
-    known_[rootOf(slot)] |= (ready ? 0 : kStaysAwake) | (pulled ? kPulled : 0) | known_[slot];
+    known_[rootOf(slot)] |= known_[slot];
+    if (!ready) known_[rootOf(slot)] |= kStaysAwake;
+    if (pulled) known_[rootOf(slot)] |= kPulled;
   }
   for (const std::uint32_t slot : active) {
     if (!bodies.valueAt(slot).isDynamic()) continue;

@@ -15,7 +15,7 @@ namespace samestep {
 template <Scalar S>
 class Islands {
  public:
-  /// Whether anything is to be woken as a step begins.
+  /// True if anything is to be woken, or forces taken from static bodies, as a step begins.
   static bool anyRoused(const StepContext<S>& step);
   /// Wakes what was changed since the last step, what rested on it, and what lies where a static body now is.
   void wakeRoused(StepContext<S>& step);
@@ -29,6 +29,7 @@ class Islands {
   // Of a body in an island, as bits.
   static constexpr std::uint8_t kStaysAwake = 1, kPulled = 2, kHeld = 4;
 
+  static bool isPulled(const StepContext<S>& step, std::uint32_t slot);
   static bool isRoused(const StepContext<S>& step, std::uint32_t slot);
   static bool isIdle(const StepContext<S>& step, std::uint32_t slot);
   void noteRoused(StepContext<S>& step);
