@@ -747,5 +747,40 @@ TYPED_TEST(SleepTest, ACallbackOfAStepMayWakeWhoSleeps) {
   }
 }
 
+// A position function rouses before contacts are known, or after they were solved; either way the next step
+// wakes, and what the body touches in between wakes by that.
+TYPED_TEST(SleepTest, APositionFunctionMayRouseWhoSleeps) {
+  using S = TypeParam;
+  for (const SolverKind solver : kBothSolvers) {
+    Towers<S> world(solver);
+    const auto rousing = [](Body<S>& body, S dt, void* data) {
+      auto& towers = *static_cast<Towers<S>*>(data);
+      body.updatePosition(dt);
+      towers.space.body(towers.tower[1]).activate();
+      if (towers.height(towers.farTower[2]) < 9.0) towers.space.body(towers.farTower[0]).activate();
+    };
+    world.space.registerPositionFunc(1, rousing, &world);
+    world.rest();
+    const ShapeId ball = addDisc<S>(world.space, {S(0), S(4)}, ratio<S>(1, 2), S(1), {S(0), S(-9)});
+    world.space.body(bodyOf(world.space, ball)).setPositionFunc(1);
+    SavedSpace<S> saved;
+    std::vector<std::uint64_t> hashes;
+    world.space.save(saved);
+    for (int i = 0; i < 60; ++i) {
+      world.step(1);
+      hashes.push_back(world.space.hash());
+    }
+    EXPECT_TRUE(world.awake(world.tower));
+    EXPECT_TRUE(world.awake(world.farTower));
+    EXPECT_GT(world.height(world.tower[0]), 0.4);
+    world.space.restore(saved);
+    for (int i = 0; i < 60; ++i) {
+      world.space.dropCache();
+      world.step(1);
+      ASSERT_EQ(world.space.hash(), hashes[static_cast<std::size_t>(i)]) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace samestep
