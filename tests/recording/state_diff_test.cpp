@@ -72,7 +72,7 @@ TYPED_TEST(StateDiffTest, TellsOfEachSection) {
     if (name.empty()) break;
     EXPECT_FALSE(differences(space.state(), changed).empty()) << name;
   }
-  EXPECT_EQ(place, 8);
+  EXPECT_EQ(place, 9);
 }
 
 // They tell which ids come next.

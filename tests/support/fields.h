@@ -115,7 +115,11 @@ struct SectionChange {
   void operator()(const Section& section, std::vector<T>& records) {
     if (place++ != target) return;
     changed = section.object;
-    records.pop_back();
+    if (records.empty()) {
+      records.emplace_back();
+    } else {
+      records.pop_back();
+    }
   }
 };
 
