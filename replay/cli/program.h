@@ -40,6 +40,8 @@ void addScenes(CLI::App& app, int& result);
 void addHash(CLI::App& app, int& result);
 void addRecord(CLI::App& app, int& result);
 void addVerify(CLI::App& app, const Wirings& wirings, int& result);
+void addShards(CLI::App& app, int& result);
+void addMerge(CLI::App& app, int& result);
 void addInfo(CLI::App& app, int& result);
 void addDiff(CLI::App& app, const Wirings& wirings, int& result);
 void addDraw(CLI::App& app, const Wirings& wirings, int& result);

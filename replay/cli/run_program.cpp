@@ -47,6 +47,8 @@ int samestep::runProgram(int argc, char** argv, const Wirings& wirings) {
   addHash(app, result);
   addRecord(app, result);
   addVerify(app, wirings, result);
+  addShards(app, result);
+  addMerge(app, result);
   addInfo(app, result);
   addDiff(app, wirings, result);
   addDraw(app, wirings, result);

@@ -3,6 +3,7 @@
 #include <samestep/version.h>
 
 #include <exception>
+#include <new>
 
 #include "base/require_ieee.h"
 #include "recording/recording_format.h"
@@ -28,6 +29,8 @@ const char* verdictName(Verdict verdict) {
       return "unusable";
     case Verdict::stopped:
       return "stopped";
+    case Verdict::sampled:
+      return "sampled";
   }
   return "unknown";
 }
@@ -58,6 +61,7 @@ void sayResult(Judgement& judgement, const VerifyOptions& options) {
     sayMismatch(judgement, options);
   } else if (result.stopped) {
     judgement.verdict = Verdict::stopped;
+    judgement.settled = false;
     judgement.reason = "stopped before its end";
   } else if (result.unexpected != nullptr && !tooShort) {
     judgement.verdict = Verdict::unexpected;
@@ -70,6 +74,10 @@ void sayResult(Judgement& judgement, const VerifyOptions& options) {
   } else if (result.cut) {
     judgement.verdict = Verdict::incomplete;
     judgement.reason = "ends after tick " + number(result.ticks) + " without an end";
+  } else if (result.sampled) {
+    judgement.verdict = Verdict::sampled;
+    judgement.reason =
+        number(result.ticksCompared) + " of " + number(result.ticks) + " ticks are compared, the others not";
   }
 }
 
@@ -96,8 +104,11 @@ Judgement judged(std::span<const std::uint8_t> bytes, const VerifyOptions& optio
   } catch (const FormatError& error) {
     judgement.reason = error.what();
     judgement.offset = error.offset();
+  } catch (const std::bad_alloc&) {
+    judgement.settled = false;
+    judgement.reason = "no memory";
   } catch (const std::exception& error) {
-    // A function that is not registered, no memory.
+    // A function that is not registered.
     judgement.reason = error.what();
   }
 #else

@@ -5,6 +5,7 @@
 
 #include "base/require_ieee.h"
 #include "recording/recording_format.h"
+#include "state/state_hash.h"
 
 namespace samestep {
 
@@ -53,6 +54,7 @@ struct CommandWatch {
 template <Scalar S>
 class KeyframeWatch {
  public:
+  explicit KeyframeWatch(std::size_t next = 0) : next_(next) {}
   /// True if there is none for the world as it is now, or it is that world.
   bool agrees(const Replay<S>& replay) {
     const auto keyframes = replay.reader().keyframes();
@@ -61,7 +63,7 @@ class KeyframeWatch {
   }
 
  private:
-  std::size_t next_ = 0;
+  std::size_t next_;
 };
 
 /// Tells whether the world is as recorded; notes the first one that is not, and how it goes on.
@@ -100,7 +102,49 @@ void checkClaims(Replay<S>& replay, const Wiring<S>& wiring, VerifyResult& resul
   }
 }
 
-/// Replays all of it.
+/// Replays on to a step, comparing each. False where it ends before: at a mismatch, or as it is told to.
+template <Scalar S>
+bool verifyUpTo(std::uint64_t tick, Replay<S>& replay, KeyframeWatch<S> keyframes, const Wiring<S>& wiring,
+                const VerifyOptions& options, VerifyResult& result) {
+  while (true) {
+    if (!compare(replay, keyframes, result) && !options.toTheEnd) return false;
+    checkClaims(replay, wiring, result);
+    if (options.progress != nullptr && !options.progress(replay.tick(), replay.ticks(), options.data)) {
+      result.stopped = true;
+      return false;
+    }
+    if (replay.tick() == tick || !replay.step()) return result.unexpected == nullptr;
+    ++result.ticksCompared;
+  }
+}
+
+/// Whether a stretch is among those of the sample.
+bool isDrawn(const VerifyOptions& options, std::size_t stretch, std::size_t stretches) {
+  const auto drawn = [&](std::uint64_t number) {
+    std::uint8_t bytes[8];
+    for (int i = 0; i < 8; ++i) bytes[i] = static_cast<std::uint8_t>(number >> (8 * i));
+    return XXH3_64bits_withSeed(bytes, sizeof bytes, options.sampleSeed);
+  };
+  return drawn(stretch) % 100 < options.sample || drawn(~std::uint64_t{0}) % stretches == stretch;
+}
+
+/// Replays the stretches of the sample.
+template <Scalar S>
+void verifySample(Replay<S>& replay, const Wiring<S>& wiring, const VerifyOptions& options,
+                  VerifyResult& result) {
+  const std::span<const Keyframe> keyframes = replay.reader().keyframes();
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    if (!isDrawn(options, i, keyframes.size())) {
+      result.sampled = true;
+      continue;
+    }
+    if (replay.tick() != keyframes[i].tick) replay.seek(keyframes[i].tick);
+    const std::uint64_t end = i + 1 < keyframes.size() ? keyframes[i + 1].tick : replay.ticks();
+    if (!verifyUpTo(end, replay, KeyframeWatch<S>(i), wiring, options, result)) return;
+  }
+}
+
+/// Replays all of it, or a sample.
 template <Scalar S>
 void verifyInto(VerifyResult& result, std::span<const std::uint8_t> bytes, const Wiring<S>& wiring,
                 const VerifyOptions& options) {
@@ -111,20 +155,19 @@ void verifyInto(VerifyResult& result, std::span<const std::uint8_t> bytes, const
   result.cut = !replay.reader().isWhole();
   if (replay.space().stamp() > options.mostFirstTick)
     failFormat(kWorldAt, "begins after more steps than allowed");
+  require<Fault::ValueOutOfRange>(options.sample >= 1 && options.sample <= 100, "a sample is of ",
+                                  options.sample, " in 100, allowed are 1 to 100");
   result.unexpected = unexpectedIn(replay, options.expected);
   if (result.unexpected != nullptr) return;
   CommandWatch<S> watch{options.expected.commands, result};
   replay.setCommandFilter(CommandWatch<S>::filter, &watch);
-  KeyframeWatch<S> keyframes;
-  do {
-    if (!compare(replay, keyframes, result) && !options.toTheEnd) return;
-    checkClaims(replay, wiring, result);
-    if (options.progress != nullptr && !options.progress(replay.tick(), replay.ticks(), options.data)) {
-      result.stopped = true;
-      return;
-    }
-  } while (replay.step());
-  result.matches = result.unexpected == nullptr && result.claimsThatAreFalse == 0 && result.wrongTicks == 0;
+  if (options.sample < 100) {
+    verifySample(replay, wiring, options, result);
+  } else {
+    verifyUpTo(replay.ticks(), replay, KeyframeWatch<S>(), wiring, options, result);
+  }
+  result.matches = !result.stopped && result.unexpected == nullptr && result.claimsThatAreFalse == 0 &&
+                   result.wrongTicks == 0;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <memory>
 
 #include <samestep/verify.h>
 #include <samestep/workers.h>
@@ -9,6 +10,8 @@
 #include <unistd.h>
 
 #include "cli/program.h"
+#include "cli/verify/verdict_file.h"
+#include "cli/verify/verdict_line.h"
 #include "cli/verify/verify_batch.h"
 
 namespace samestep::program {
@@ -97,9 +100,12 @@ namespace {
 /// Files to verify, and who verifies them.
 struct Batch {
   std::vector<std::string> arguments;
-  int jobs = 1;
+  Crew crew;
   std::string shard;
-  std::uint64_t megabytes = 0;
+  std::string output;
+  std::uint32_t files = 100;  ///< Of a hundred.
+  std::uint64_t seed = 0;
+  bool telling = false;
 };
 
 /// "3/8": shard and count.
@@ -115,25 +121,37 @@ bool readShard(const std::string& text, std::uint64_t& shard, std::uint64_t& cou
 /// Counts verdicts, and says what they were of several files.
 class Summary {
  public:
-  explicit Summary(std::size_t files) : files_(files) {}
+  explicit Summary(const std::vector<Job>& jobs) : files_(jobs.size()) {
+    for (const Job& job : jobs) work_ += job.work;
+  }
 
-  void add(const Said& said) {
+  void add(const Job& job, const Said& said) {
     ++counts_[static_cast<std::size_t>(said.verdict)];
     ticks_ += said.ticks;
     code_ = std::max(code_, exitCodeOf(said.verdict));
+    done_ += job.work;
     ++told_;
   }
+  /// A verdict that an earlier run came to.
+  void addFound(const Job& job, Verdict verdict) {
+    ++counts_[static_cast<std::size_t>(verdict)];
+    code_ = std::max(code_, exitCodeOf(verdict));
+    work_ -= job.work;
+    ++told_;
+    ++found_;
+  }
   int code() const { return code_; }
+  /// The time left is that of the work left, as the work done took.
   std::string progress() const {
-    const std::int64_t took = std::max<std::int64_t>(milliseconds() - start_, 1);
-    const std::uint64_t left =
-        static_cast<std::uint64_t>(took) * (files_ - told_) / std::max<std::size_t>(told_, 1);
+    const std::uint64_t took = since();
+    const double perWork = static_cast<double>(took) / static_cast<double>(std::max<std::uint64_t>(done_, 1));
+    const auto left = static_cast<std::uint64_t>(perWork * static_cast<double>(work_ - done_) / 1000);
     return "verify: " + std::to_string(told_) + " of " + std::to_string(files_) + " files, " +
-           std::to_string(told_ * 1000 / static_cast<std::uint64_t>(took)) + " a second, " +
-           std::to_string(left / 1000) + " s left";
+           std::to_string((told_ - found_) * 1000 / took) + " a second, " +
+           std::to_string(ticks_ * 1000 / took) + " ticks a second, " + std::to_string(left) + " s left";
   }
   std::string text() const {
-    const auto took = static_cast<std::uint64_t>(std::max<std::int64_t>(milliseconds() - start_, 1));
+    const std::uint64_t took = since();
     std::string line = std::to_string(told_) + (told_ == 1 ? " file" : " files");
     const char* before = ": ";
     for (std::size_t i = 0; i < std::size(counts_); ++i) {
@@ -141,39 +159,106 @@ class Summary {
       line += before + std::to_string(counts_[i]) + " " + verdictName(static_cast<Verdict>(i));
       before = ", ";
     }
+    if (found_ > 0) line += "; " + std::to_string(found_) + " verdicts were there";
     return line + "; " + std::to_string(ticks_) + " ticks in " + std::to_string(took) + " ms (" +
            std::to_string(ticks_ * 1000 / took) + " ticks/s)\n";
   }
 
  private:
+  std::uint64_t since() const {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(milliseconds() - start_, 1));
+  }
+
   std::size_t files_;
   std::int64_t start_ = milliseconds();
   std::size_t told_ = 0;
-  std::uint64_t counts_[8] = {};
+  std::size_t found_ = 0;
+  std::uint64_t counts_[kVerdicts] = {};
   std::uint64_t ticks_ = 0;
+  std::uint64_t work_ = 0;
+  std::uint64_t done_ = 0;
   int code_ = kGood;
 };
 
-int runBatch(const Batch& batch, const VerifyPlan& plan) {
+/// Shows how far a batch is: on a terminal as it goes, else where it is asked for, a line now and then.
+class BatchProgress {
+ public:
+  explicit BatchProgress(bool shown, bool asked)
+      : terminal_(isatty(STDERR_FILENO) == 1), shown_(asked || (shown && terminal_)) {}
+
+  void clear() { status_.clear(); }
+  void show(const Summary& summary) {
+    if (!shown_ || milliseconds() < next_) return;
+    next_ = milliseconds() + (terminal_ ? 100 : 10000);
+    status_.show(summary.progress());
+  }
+
+ private:
+  bool terminal_;
+  bool shown_;
+  std::int64_t next_ = 0;
+  StatusLine status_;
+};
+
+std::vector<Job> jobsFor(const Batch& batch) {
   std::vector<std::string> files = filesNamed(batch.arguments);
+  if (files.empty()) throw Unusable("there are no files to verify");
+  if (batch.files < 100) files = sampleOf(files, batch.files, batch.seed);
+  const std::vector<Job> jobs = jobsOf(files);
   std::uint64_t shard = 1;
   std::uint64_t count = 1;
-  if (readShard(batch.shard, shard, count)) files = shardOf(files, shard, count);
-  Summary summary(files.size());
-  StatusLine status;
-  const bool watched = files.size() > 1 && isatty(STDERR_FILENO) == 1;
-  verifyAll(files, plan, batch.jobs, batch.megabytes, [&](const Said& said) {
-    status.clear();
-    std::fputs(said.out.c_str(), stdout);
-    // A batch that is killed keeps the verdicts it has come to, each in a line that is whole.
-    std::fflush(stdout);
+  if (!readShard(batch.shard, shard, count)) return jobs;
+  return shardsOf(jobs, count)[static_cast<std::size_t>(shard - 1)];
+}
+
+/// Takes out the jobs whose verdicts an earlier run left in the file of verdicts, which holds those alone
+/// from then on.
+std::vector<Job> withoutFound(const std::vector<Job>& jobs, const VerifyPlan& plan, VerdictFile& verdicts,
+                              Summary& summary) {
+  std::vector<Job> left;
+  const std::uint64_t asked = askedOf(plan.options);
+  for (const Job& job : jobs) {
+    const std::string line =
+        verdicts.isEmpty() ? ""
+                           : verdicts.found(job.file, contentOf(job.file, plan.options.limits.bytes), asked);
+    if (line.empty()) {
+      left.push_back(job);
+      continue;
+    }
+    verdicts.add(line);
+    summary.addFound(job, verdictNamed(readVerdictLine(line)->verdict));
+  }
+  return left;
+}
+
+int runBatch(const Batch& batch, const VerifyPlan& plan) {
+  std::vector<Job> jobs = jobsFor(batch);
+  Summary summary(jobs);
+  const bool several = jobs.size() != 1 || !batch.shard.empty() || batch.files < 100;
+  std::unique_ptr<VerdictFile> verdicts;
+  if (!batch.output.empty()) {
+    verdicts = std::make_unique<VerdictFile>(batch.output);
+    jobs = withoutFound(jobs, plan, *verdicts, summary);
+  }
+  std::vector<std::string> files;
+  for (const Job& job : jobs) files.push_back(job.file);
+  BatchProgress progress(jobs.size() > 1, batch.telling);
+  verifyAll(files, plan, batch.crew, [&](std::size_t file, const Said& said) {
+    progress.clear();
+    if (verdicts) {
+      verdicts->add(said.out);
+    } else {
+      std::fputs(said.out.c_str(), stdout);
+      // A batch that is killed keeps the verdicts it has come to, each in a line that is whole.
+      std::fflush(stdout);
+    }
     std::fputs(said.error.c_str(), stderr);
-    summary.add(said);
-    if (watched) status.show(summary.progress());
+    summary.add(jobs[file], said);
+    progress.show(summary);
   });
-  status.clear();
-  if (files.size() != 1 || !batch.shard.empty())
-    std::fputs(summary.text().c_str(), plan.json ? stderr : stdout);
+  progress.clear();
+  if (verdicts) verdicts->finish();
+  if (several) std::fputs(summary.text().c_str(), plan.json ? stderr : stdout);
   return summary.code();
 }
 
@@ -183,9 +268,10 @@ void addBatch(CLI::App& word, Batch& batch, VerifyPlan& plan) {
           "Recordings, as 'samestep record' or a game wrote them, folders of them, or - for a list of "
           "files on the standard input")
       ->required();
-  word.add_option("--jobs", batch.jobs, "How many processes verify files, one each at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  word.add_option("--jobs", batch.crew.jobs,
+                  "How many processes verify files, one each at a time, without network or writing; if it is "
+                  "not given, the program does so by itself")
+      ->check(CLI::Range(1, 1024));
   const auto shards = [](const std::string& text) {
     std::uint64_t shard = 0;
     std::uint64_t count = 0;
@@ -196,36 +282,54 @@ void addBatch(CLI::App& word, Batch& batch, VerifyPlan& plan) {
           "I/N: only the I-th of N parts of the files, which are of about the same work and the same on "
           "every machine that has the files")
       ->check(CLI::Validator(shards, "I/N"));
-  word.add_option("--max-memory", batch.megabytes, "Megabytes of memory that a file may take, by a process")
+  word.add_option("--max-memory,--limit-memory", batch.crew.megabytes,
+                  "Megabytes of memory that a file may take, by a process")
       ->check(CLI::Range(std::uint64_t{16}, std::uint64_t{1} << 24));
   word.add_flag("--json", plan.json, "Say what is to be said in JSON, a line for each file");
+  word.add_option("-o,--output", batch.output,
+                  "Write the lines of --json to this file, which is whole or not there; a run that was ended "
+                  "goes on where it was")
+      ->needs("--json");
+  word.add_flag("--progress", batch.telling, "Say how far it is where there is no terminal, too");
+  word.add_option("--sample", plan.options.sample,
+                  "Replay only so many of 100 stretches between keyframes of each recording, one at least")
+      ->check(CLI::Range(1u, 100u));
+  word.add_option("--sample-files", batch.files, "Verify only so many of 100 files")
+      ->check(CLI::Range(1u, 100u));
+  word.add_option("--seed", batch.seed, "What samples are drawn by; keep it from those who send recordings");
   word.add_flag("--to-the-end", plan.options.toTheEnd, "Go on after a mismatch, to see whether it heals");
 }
 
 void addLimits(CLI::App& word, RecordingLimits& limits, std::int64_t& seconds) {
-  word.add_option("--max-bodies", limits.bodies, "Refuse recordings of worlds with more bodies")
+  word.add_option("--max-bodies,--limit-bodies", limits.bodies,
+                  "Refuse recordings of worlds with more bodies")
       ->capture_default_str();
-  word.add_option("--max-shapes", limits.shapes, "Refuse those with more shapes")->capture_default_str();
-  word.add_option("--max-pairs", limits.pairs, "Refuse those with more shapes near each other")
+  word.add_option("--max-shapes,--limit-shapes", limits.shapes, "Refuse those with more shapes")
+      ->capture_default_str();
+  word.add_option("--max-pairs,--limit-pairs", limits.pairs, "Refuse those with more shapes near each other")
       ->check(CLI::Range(std::uint32_t{0}, kMostPairs))
       ->capture_default_str();
-  word.add_option("--max-handlers", limits.handlers, "Refuse those with more collision handlers bound")
+  word.add_option("--max-handlers,--limit-handlers", limits.handlers,
+                  "Refuse those with more collision handlers bound")
       ->capture_default_str();
-  word.add_option("--max-iterations", limits.iterations,
+  word.add_option("--max-iterations,--limit-iterations", limits.iterations,
                   "Refuse those whose steps solve contacts more often, by sequential impulses")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  word.add_option("--max-substeps", limits.substeps, "Refuse those whose steps have more substeps")
+  word.add_option("--max-substeps,--limit-substeps", limits.substeps,
+                  "Refuse those whose steps have more substeps")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  word.add_option("--max-commands", limits.commandsPerTick, "Refuse those with more commands before a step")
+  word.add_option("--max-commands,--limit-commands", limits.commandsPerTick,
+                  "Refuse those with more commands before a step")
       ->capture_default_str();
-  word.add_option("--max-bytes", limits.bytes, "Refuse files that are larger; no more of them is read")
+  word.add_option("--max-bytes,--limit-bytes", limits.bytes,
+                  "Refuse files that are larger; no more of them is read")
       ->capture_default_str();
-  word.add_option("--max-work", limits.work,
+  word.add_option("--max-work,--limit-work", limits.work,
                   "Refuse those that take more work, in units of about 10 ns: the same on every machine")
       ->check(CLI::Range(std::uint64_t{1}, ~std::uint64_t{0}));
-  word.add_option("--max-seconds", seconds, "Give up after so many seconds for a recording")
+  word.add_option("--max-seconds,--limit-seconds", seconds, "Give up after so many seconds for a recording")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 30));
 }
 
@@ -249,9 +353,13 @@ void addVerify(CLI::App& app, const Wirings& wirings, int& result) {
     plan->options.expected = expectationsOf(*word, *expected);
     WorkerPool pool(compute->workers);
     plan->options.workers = &pool;
-    if ((batch->jobs > 1 || batch->megabytes > 0) && compute->workers > 1) {
-      throw Unusable("--workers share out a step, processes (--jobs, --max-memory) files: one at a time");
+    Crew& crew = batch->crew;
+    crew.apart = word->count("--jobs") > 0 || !batch->output.empty();
+    crew.inOrder = batch->output.empty();
+    if ((crew.apart || crew.megabytes > 0) && compute->workers > 1) {
+      throw Unusable("--workers share out a step, processes (--jobs, --max-memory, -o) files: one at a time");
     }
+    plan->options.sampleSeed = batch->seed;
     result = runBatch(*batch, *plan);
   });
 }

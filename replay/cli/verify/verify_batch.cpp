@@ -5,29 +5,24 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <set>
+#include <utility>
 
 #include "cli/program.h"
 #include "cli/verify/worker_processes.h"
 #include "recording/recording_format.h"
+#include "state/state_hash.h"
 
 namespace samestep::program {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool looksLikeRecording(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  char first[sizeof kRecordingMagic] = {};
-  stream.read(first, sizeof first);
-  return stream && std::equal(std::begin(first), std::end(first), kRecordingMagic,
-                              [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
-}
-
 void addFolder(const std::string& folder, std::vector<std::string>& files) {
   const std::size_t before = files.size();
   std::error_code error;
   for (const auto& entry : fs::recursive_directory_iterator(folder, error)) {
-    if (entry.is_regular_file(error) && looksLikeRecording(entry.path())) {
+    if (entry.is_regular_file(error) && looksLikeRecording(entry.path().string())) {
       files.push_back(entry.path().string());
     }
   }
@@ -42,13 +37,21 @@ std::uint64_t littleEndian(const std::vector<std::uint8_t>& bytes, std::size_t a
   return value;
 }
 
-/// Steps times the bytes of the first world; of an old recording or one that was cut, its size.
+/// Of a step without commands.
+constexpr std::uint64_t kStepBytes = 9;
+
+/// The size of a recording's first world, as its first bytes tell it.
+std::uint64_t worldBytes(const std::vector<std::uint8_t>& head) {
+  const bool packed = (head[kWorldAt] & kPackedBit) != 0;
+  return littleEndian(head, kWorldAt + (packed ? kSectionHeadBytes : 1), 4);
+}
+
 std::uint64_t workOf(const std::string& file) {
-  constexpr std::uint64_t kTail = 29, kMostTicks = 1u << 30;
+  constexpr std::uint64_t kTail = kSectionHeadBytes + 16 + kChainBytes;
   std::error_code error;
   const std::uint64_t size = fs::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
-  std::vector<std::uint8_t> head(kWorldAt + kSectionHeadBytes);
+  std::vector<std::uint8_t> head(kWorldAt + kSectionHeadBytes + kUnpackedLengthBytes);
   std::vector<std::uint8_t> tail(kTail);
   stream.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));
   if (error || !stream || size < head.size() + kTail) return error ? 0 : size;
@@ -57,7 +60,11 @@ std::uint64_t workOf(const std::string& file) {
   const bool ended = littleEndian(head, kVersionAt, 4) > kOldestRecordingVersion &&
                      tail[0] == static_cast<std::uint8_t>(SectionKind::end);
   if (!stream || !ended) return size;
-  return std::min(littleEndian(tail, 5, 8), kMostTicks) * littleEndian(head, kWorldAt + 1, 4);
+  const std::uint64_t plain = std::min(size, std::uint64_t{1} << 24) * kMaxUnpackedPerByte;
+  const std::uint64_t work = std::min(littleEndian(tail, kSectionHeadBytes, 8), plain / kStepBytes) *
+                             std::min({worldBytes(head), plain, std::uint64_t{kMaxUnpackedBytes}});
+  // Millions of them can be added up.
+  return std::min(work, std::uint64_t{1} << 42);
 }
 
 }  // namespace
@@ -81,40 +88,59 @@ std::vector<std::string> filesNamed(const std::vector<std::string>& arguments) {
   return files;
 }
 
-std::vector<std::string> shardOf(const std::vector<std::string>& files, std::uint64_t shard,
-                                 std::uint64_t count) {
-  struct Job {
-    std::uint64_t work;
-    std::string file;
-  };
+bool looksLikeRecording(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  char first[sizeof kRecordingMagic] = {};
+  stream.read(first, sizeof first);
+  return stream && std::equal(std::begin(first), std::end(first), kRecordingMagic,
+                              [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
+}
+
+std::vector<Job> jobsOf(const std::vector<std::string>& files) {
   std::vector<Job> jobs;
-  for (const std::string& file : files) jobs.push_back({workOf(file), file});
+  for (const std::string& file : files) jobs.push_back({file, std::max<std::uint64_t>(workOf(file), 1)});
+  return jobs;
+}
+
+std::vector<std::string> sampleOf(const std::vector<std::string>& files, std::uint32_t percent,
+                                  std::uint64_t seed) {
+  std::vector<std::string> drawn;
+  for (const std::string& file : files) {
+    if (XXH3_64bits_withSeed(file.data(), file.size(), seed) % 100 < percent) drawn.push_back(file);
+  }
+  return drawn;
+}
+
+std::vector<std::vector<Job>> shardsOf(std::vector<Job> jobs, std::uint64_t count) {
   std::stable_sort(jobs.begin(), jobs.end(), [](const Job& a, const Job& b) {
     return a.work != b.work ? a.work > b.work : a.file < b.file;
   });
-  std::vector<std::uint64_t> loads(count, 0);
-  std::vector<std::string> own;
-  for (const Job& job : jobs) {
-    const auto least = std::min_element(loads.begin(), loads.end());
-    // At least one, so that files without work are shared out, too.
-    *least += std::max<std::uint64_t>(job.work, 1);
-    if (static_cast<std::uint64_t>(least - loads.begin()) + 1 == shard) own.push_back(job.file);
+  // The least load on top, and of equal ones the first shard.
+  using Load = std::pair<std::uint64_t, std::uint64_t>;
+  std::set<Load> loads;
+  for (std::uint64_t shard = 0; shard < count; ++shard) loads.insert({0, shard});
+  std::vector<std::vector<Job>> shards(static_cast<std::size_t>(count));
+  for (Job& job : jobs) {
+    const Load least = *loads.begin();
+    loads.erase(loads.begin());
+    loads.insert({least.first + job.work, least.second});
+    shards[static_cast<std::size_t>(least.second)].push_back(std::move(job));
   }
-  return own;
+  return shards;
 }
 
-void verifyAll(const std::vector<std::string>& files, const VerifyPlan& plan, int jobs,
-               std::uint64_t megabytes, const std::function<void(const Said&)>& tell) {
-  const bool alone = jobs == 1 && megabytes == 0;
+void verifyAll(const std::vector<std::string>& files, const VerifyPlan& plan, const Crew& crew,
+               const std::function<void(std::size_t, const Said&)>& tell) {
+  const bool alone = crew.jobs == 1 && crew.megabytes == 0 && !crew.apart;
   if (alone || !WorkerProcesses::available()) {
-    for (const std::string& file : files) tell(verifyFile(file, plan));
+    for (std::size_t i = 0; i < files.size(); ++i) tell(i, verifyFile(files[i], plan));
     return;
   }
   VerifyPlan quiet = plan;
   quiet.quiet = true;
-  WorkerProcesses(files, quiet, std::min<std::size_t>(static_cast<std::size_t>(jobs), files.size()),
-                  megabytes)
-      .run(tell);
+  WorkerProcesses(files, quiet, std::min<std::size_t>(static_cast<std::size_t>(crew.jobs), files.size()),
+                  crew.megabytes)
+      .run(tell, crew.inOrder);
 }
 
 }  // namespace samestep::program

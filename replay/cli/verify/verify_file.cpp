@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/verify/verify_file.h"
 
-#include <samestep/version.h>
-
 #include <algorithm>
-#include <cstdio>
+#include <exception>
 
 #include "cli/program.h"
+#include "cli/verify/verdict_file.h"
+#include "cli/verify/verdict_line.h"
 
 namespace samestep::program {
 namespace {
@@ -25,48 +25,6 @@ struct Watch {
 };
 
 std::string number(std::uint64_t value) { return std::to_string(value); }
-
-/// Writes a string of JSON: bytes that are no ASCII as escapes, so that a line is one whatever a file is
-/// called.
-std::string jsonText(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      quoted += {'\\', c};
-    } else if (c >= ' ' && c <= '~') {
-      quoted += c;
-    } else {
-      char escape[8];
-      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(static_cast<unsigned char>(c)));
-      quoted += escape;
-    }
-  }
-  return quoted + "\"";
-}
-
-std::string jsonLine(const std::string& file, const Judgement& judgement, std::int64_t milliseconds) {
-  const VerifyResult& result = judgement.result;
-  std::string line = "{\"file\":" + jsonText(file) + ",\"content\":\"" + hex(judgement.content) +
-                     "\",\"verifier\":" + number(kSimulationRevision) +
-                     ",\"verdict\":" + jsonText(verdictName(judgement.verdict));
-  if (!judgement.reason.empty()) line += ",\"reason\":" + jsonText(judgement.reason);
-  if (judgement.revision != 0) line += ",\"revision\":" + number(judgement.revision);
-  if (judgement.offset != 0) line += ",\"offset\":" + number(judgement.offset);
-  if (result.ticks != 0) {
-    line += ",\"ticks\":" + number(result.ticks) + ",\"tick\":" + number(judgement.tick) +
-            ",\"recorded\":\"" + hex(result.recordedHash) + "\",\"computed\":\"" + hex(result.computedHash) +
-            "\"";
-    line += ",\"claims\":{\"hold\":" + number(result.claimsThatHold) +
-            ",\"false\":" + number(result.claimsThatAreFalse) +
-            ",\"unknown\":" + number(result.claimsUnknown) + "}";
-  }
-  if (result.falseClaim) {
-    line += ",\"falseClaim\":{\"key\":" + jsonText(result.falseClaim->key) +
-            ",\"value\":" + jsonText({result.falseClaim->value.begin(), result.falseClaim->value.end()}) +
-            "}";
-  }
-  return line + ",\"milliseconds\":" + number(static_cast<std::uint64_t>(milliseconds)) + "}\n";
-}
 
 std::string goodLine(const Judgement& judgement, std::int64_t milliseconds) {
   const VerifyResult& result = judgement.result;
@@ -102,6 +60,8 @@ std::string lineFor(const Judgement& judgement, std::int64_t milliseconds) {
   switch (judgement.verdict) {
     case Verdict::verified:
       return goodLine(judgement, milliseconds);
+    case Verdict::sampled:
+      return "SAMPLED: " + judgement.reason + "; those give the recorded hashes";
     case Verdict::mismatch:
       return mismatchLine(judgement);
     case Verdict::falseClaim:
@@ -124,7 +84,7 @@ Said say(const std::string& file, const Judgement& judgement, const VerifyPlan& 
   said.verdict = judgement.verdict;
   said.ticks = judgement.result.ticks;
   if (plan.json) {
-    said.out = jsonLine(file, judgement, milliseconds);
+    said.out = verdictLine(file, judgement, askedOf(plan.options), milliseconds);
     return said;
   }
   const std::string line = lineFor(judgement, milliseconds);
@@ -141,12 +101,14 @@ Said say(const std::string& file, const Judgement& judgement, const VerifyPlan& 
 
 }  // namespace
 
-Said saidUnusable(const std::string& file, const std::string& reason, bool json) {
+Said saidUnusable(const std::string& file, const std::string& reason, bool settled, const VerifyPlan& plan) {
   Said said;
   Judgement judgement;
   judgement.reason = reason;
-  if (json) {
-    said.out = jsonLine(file, judgement, 0);
+  judgement.settled = settled;
+  if (plan.json) {
+    judgement.content = contentOf(file, plan.options.limits.bytes);
+    said.out = verdictLine(file, judgement, askedOf(plan.options), 0);
   } else {
     said.error = "samestep: " + reason + "\n";
   }
@@ -174,15 +136,16 @@ Said verifyFile(const std::string& file, const VerifyPlan& plan) {
     return say(file, judgement, plan, took);
   } catch (const FormatError& error) {
     const std::string place = file + ": offset " + std::to_string(error.offset()) + ": ";
-    return saidUnusable(file, place + error.what(), plan.json);
+    return saidUnusable(file, place + error.what(), true, plan);
   } catch (const Unusable& error) {
-    return saidUnusable(file, error.what(), plan.json);
+    return saidUnusable(file, error.what(), true, plan);
   }
 }
 
 int exitCodeOf(Verdict verdict) {
   switch (verdict) {
     case Verdict::verified:
+    case Verdict::sampled:
       return kGood;
     case Verdict::mismatch:
     case Verdict::falseClaim:

@@ -28,7 +28,8 @@ struct Said {
 /// Verifies one file. Whatever it is, there is something to be said of it.
 Said verifyFile(const std::string& file, const VerifyPlan& plan);
 /// Answer about a file that could not be come to an end with.
-Said saidUnusable(const std::string& file, const std::string& reason, bool json);
+/// @param settled  whether it is the same on every machine
+Said saidUnusable(const std::string& file, const std::string& reason, bool settled, const VerifyPlan& plan);
 /// The exit code that a verdict stands for.
 int exitCodeOf(Verdict verdict);
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "cli/program.h"
+#include "cli/verify/confinement.h"
 
 #if defined(__unix__) && !defined(__EMSCRIPTEN__) && !defined(__wasi__)
 #define SAMESTEP_PROCESSES
@@ -16,7 +17,6 @@
 #ifdef SAMESTEP_PROCESSES
 #include <poll.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -64,12 +64,9 @@ bool readAll(int from, void* data, std::size_t size) {
   return true;
 }
 
-void limitMemory(std::uint64_t megabytes) {
-  if (megabytes == 0) return;
-  rlimit limit{};
-  limit.rlim_cur = limit.rlim_max = static_cast<rlim_t>(megabytes << 20);
-  ::setrlimit(RLIMIT_AS, &limit);
-}
+/// After so many files a process makes room for another: what one left behind, such as memory in pieces,
+/// ends.
+constexpr std::size_t kFilesOfAProcess = 1000;
 
 /// Verifies a file; a failure that cannot even be said is left to the parent, which finds the process gone.
 Said verifyOrEnd(const std::string& file, const VerifyPlan& plan) {
@@ -127,10 +124,11 @@ void WorkerProcesses::start(Worker& worker) {
   worker.orders = orders[1];
   worker.answers = answers[0];
   worker.received.clear();
+  worker.files = 0;
 }
 
 void WorkerProcesses::serve(int orders, int answers) const {
-  limitMemory(megabytes_);
+  confineThisProcess(megabytes_);
   std::uint64_t file = 0;
   while (readAll(orders, &file, sizeof file)) {
     const Said said = verifyOrEnd(files_[static_cast<std::size_t>(file)], plan_);
@@ -147,6 +145,12 @@ void WorkerProcesses::serve(int orders, int answers) const {
 /// Gives it the next file; lets it go where there is none.
 void WorkerProcesses::assign(Worker& worker) {
   if (next_ == files_.size()) return close(worker);
+  if (worker.files == kFilesOfAProcess) {
+    close(worker);
+    start(worker);
+  }
+  ++worker.files;
+  worker.since = milliseconds();
   worker.file = next_++;
   const std::uint64_t file = worker.file;
   // One that is gone is found when it does not answer.
@@ -161,8 +165,8 @@ void WorkerProcesses::bury(Worker& worker) {
   while (::waitpid(worker.process, &status, 0) < 0 && errno == EINTR) continue;
   worker.process = 0;
   const std::string& file = files_[worker.file];
-  said_[worker.file] =
-      saidUnusable(file, file + ": the process that verified it " + endOf(status), plan_.json);
+  keep(worker.file,
+       saidUnusable(file, file + ": the process that verified it " + endOf(status), false, plan_));
   if (next_ == files_.size()) return;
   start(worker);
   assign(worker);
@@ -179,14 +183,29 @@ void WorkerProcesses::receive(Worker& worker) {
   std::memcpy(&head, worker.received.data(), sizeof head);
   if (worker.received.size() < sizeof head + head.out + head.error) return;
   const auto out = static_cast<std::size_t>(head.out);
-  said_[worker.file] =
-      Said{static_cast<Verdict>(head.verdict), head.ticks, worker.received.substr(sizeof head, out),
-           worker.received.substr(sizeof head + out, static_cast<std::size_t>(head.error))};
+  keep(worker.file,
+       Said{static_cast<Verdict>(head.verdict), head.ticks, worker.received.substr(sizeof head, out),
+            worker.received.substr(sizeof head + out, static_cast<std::size_t>(head.error))});
   worker.received.clear();
   assign(worker);
 }
 
-void WorkerProcesses::run(const std::function<void(const Said&)>& tell) {
+void WorkerProcesses::keep(std::size_t file, Said&& said) {
+  said_[file] = std::move(said);
+  ended_.push_back(file);
+}
+
+/// Ends those that do not keep the time they were given: they are stuck where nobody asks for it.
+void WorkerProcesses::endOverdue() {
+  if (plan_.seconds == 0) return;
+  const std::int64_t grace = plan_.seconds * 2000 + 2000;
+  for (const Worker& worker : workers_) {
+    if (worker.process != 0 && milliseconds() - worker.since > grace) ::kill(worker.process, SIGKILL);
+  }
+}
+
+void WorkerProcesses::run(const std::function<void(std::size_t, const Said&)>& tell, bool inOrder) {
+  constexpr int kLookMilliseconds = 1000;
   ::signal(SIGPIPE, SIG_IGN);
   for (Worker& worker : workers_) {
     start(worker);
@@ -200,15 +219,18 @@ void WorkerProcesses::run(const std::function<void(const Said&)>& tell) {
       waits.push_back({worker.answers, POLLIN, 0});
       waiting.push_back(&worker);
     }
-    if (::poll(waits.data(), static_cast<nfds_t>(waits.size()), -1) < 0 && errno != EINTR) {
+    if (::poll(waits.data(), static_cast<nfds_t>(waits.size()), kLookMilliseconds) < 0 && errno != EINTR) {
       throw Unusable("the processes cannot be waited for");
     }
+    endOverdue();
     for (std::size_t i = 0; i < waits.size(); ++i) {
       if (waits[i].revents != 0) receive(*waiting[i]);
     }
-    for (; told < files_.size() && said_[told]; ++told) {
-      tell(*said_[told]);
-      said_[told] = Said{};
+    const auto isNext = [&] { return inOrder ? said_[told].has_value() : told < ended_.size(); };
+    for (; told < files_.size() && isNext(); ++told) {
+      const std::size_t file = inOrder ? told : ended_[told];
+      tell(file, *said_[file]);
+      said_[file] = Said{};
     }
   }
 }
@@ -217,7 +239,7 @@ void WorkerProcesses::run(const std::function<void(const Said&)>& tell) {
 
 bool WorkerProcesses::available() { return false; }
 WorkerProcesses::~WorkerProcesses() = default;
-void WorkerProcesses::run(const std::function<void(const Said&)>&) {
+void WorkerProcesses::run(const std::function<void(std::size_t, const Said&)>&, bool) {
   throw Unusable("this system has no processes");
 }
 

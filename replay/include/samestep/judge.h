@@ -21,9 +21,10 @@ enum class Verdict : std::uint8_t {
   otherRevision,  ///< It was made by another simulation revision, whose build can judge it.
   unusable,       ///< It cannot be read, or the world refuses what is done in it, or it outgrows the limits.
   stopped,        ///< VerifyOptions::progress said so.
+  sampled,  ///< What was looked at came out as recorded; the rest was left out, see VerifyOptions::sample.
 };
 /// "verified", "mismatch", "false claim", "unexpected", "incomplete", "other revision", "unusable",
-/// "stopped".
+/// "stopped", "sampled".
 const char* verdictName(Verdict verdict);
 
 /// A verdict with its grounds.
@@ -39,6 +40,9 @@ struct Judgement {
   std::uint32_t revision = 0;
   /// XXH3-64 of all bytes: with kSimulationRevision, what the verdict is about.
   std::uint64_t content = 0;
+  /// True if every machine comes to this verdict, with the same options. Where time or memory was short, another
+  /// one may come to another.
+  bool settled = true;
   /// Result of replaying, as far as it came.
   VerifyResult result;
 };

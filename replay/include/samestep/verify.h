@@ -42,6 +42,10 @@ struct VerifyResult {
   std::uint64_t lastWrongTick = 0;
   /// True if the recording was cut, and only as many steps as `ticks` were there; see VerifyOptions::ending.
   bool cut = false;
+  /// Number of steps whose hash was compared; fewer than `ticks` where only a sample was.
+  std::uint64_t ticksCompared = 0;
+  /// True if stretches were left out, so that matches says nothing of them; see VerifyOptions::sample.
+  bool sampled = false;
 };
 
 /// Expectations of a match, told by whoever gave it out, not by the recording: by itself a recording shows
@@ -74,6 +78,13 @@ struct VerifyOptions {
   Ending ending = Ending::whole;
   /// A recording whose world had made more steps before is refused.
   std::uint64_t mostFirstTick = kMostFirstTick;
+  /// Number of stretches from keyframe to keyframe, of 100, that are replayed, each from its keyframe, which must
+  /// have the hash recorded for its step; one at least is. Such a stretch proves the keyframe at its end if the
+  /// one at its start is true: a recording made up by joining two is found where they are joined, and nowhere
+  /// else.
+  std::uint32_t sample = 100;
+  /// Number that they are drawn by: whoever knows it when he makes a recording knows where nobody will look.
+  std::uint64_t sampleSeed = 0;
   /// Function that is called after every step; false stops, as for a recording that takes too long. Null for
   /// none.
   bool (*progress)(std::uint64_t done, std::uint64_t total, void* data) = nullptr;
