@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 #include <samestep/error.h>
 #include <samestep/fingerprint.h>
@@ -39,7 +40,7 @@ int samestep::runProgram(int argc, char** argv, const Wirings& wirings) {
       "Runs scenes, records them, checks recordings and finds where two of them part.\n"
       "Exit code: 0 all good, 1 something differs, 2 unusable arguments or files.",
       "samestep");
-  app.set_version_flag("--version", versionText());
+  app.set_version_flag("--version", std::function<std::string()>(versionText));
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Show the help of all subcommands");
   int result = kGood;

@@ -19,7 +19,7 @@ import slurm
 RECORDINGS = 400
 SHARDS = 8
 # Each recording takes about so long, that there is a midway.
-SECONDS_EACH = 0.08
+SECONDS_EACH = 0.04
 
 
 def record(program, path, ticks, *options):
@@ -30,9 +30,9 @@ def record(program, path, ticks, *options):
 def ticks_for(program, folder, seconds):
     """How many steps of the scene take so long to verify here."""
     path = folder / "trial"
-    record(program, path, 2000)
+    record(program, path, 400)
     line = subprocess.run([program, "verify", "--json", path], check=True, stdout=subprocess.PIPE).stdout
-    return max(20, int(2000 * seconds * 1000 / max(json.loads(line)["milliseconds"], 1)))
+    return max(20, int(400 * seconds * 1000 / max(json.loads(line)["milliseconds"], 1)))
 
 
 def make_recordings(program, folder, ticks):
@@ -106,14 +106,14 @@ def main(program, root):
             print(cluster.run(scripts / "submit", run, "--shards", SHARDS, "--program", program,
                               folder / "recordings", "--", "--max-seconds", "100"), end="")
 
-            shard, node = midway(cluster, run, 5)
+            shard, node = midway(cluster, run, 3)
             slurm.kill_tree(task_process(run, shard))
             print(f"ended the task of shard {shard} on {node} after {time.monotonic() - start:.0f} s")
             cluster.wait(lambda: (shard, node) not in running(cluster), "the end of that task", 20)
             assert not (run / "verdicts" / f"{shard}.jsonl").exists()
             had = lines_so_far(run)[shard]
 
-            other, node = midway(cluster, run, 5)
+            other, node = midway(cluster, run, 3)
             cluster.lose_node(node, task_process(run, other))
             print(f"lost {node}, with shard {other}, after {time.monotonic() - start:.0f} s")
             early = cluster.run(scripts / "merge", run, check=False)

@@ -40,8 +40,8 @@ struct Judgement {
   std::uint32_t revision = 0;
   /// XXH3-64 of all bytes: with kSimulationRevision, what the verdict is about.
   std::uint64_t content = 0;
-  /// True if every machine comes to this verdict, with the same options. Where time or memory was short, another
-  /// one may come to another.
+  /// True if every machine comes to this verdict, with the same options. Where time or memory was short,
+  /// another one may come to another.
   bool settled = true;
   /// Result of replaying, as far as it came.
   VerifyResult result;

@@ -78,10 +78,10 @@ struct VerifyOptions {
   Ending ending = Ending::whole;
   /// A recording whose world had made more steps before is refused.
   std::uint64_t mostFirstTick = kMostFirstTick;
-  /// Number of stretches from keyframe to keyframe, of 100, that are replayed, each from its keyframe, which must
-  /// have the hash recorded for its step; one at least is. Such a stretch proves the keyframe at its end if the
-  /// one at its start is true: a recording made up by joining two is found where they are joined, and nowhere
-  /// else.
+  /// Number of stretches from keyframe to keyframe, of 100, that are replayed, each from its keyframe, which
+  /// must have the hash recorded for its step; one at least is. Such a stretch proves the keyframe at its end
+  /// if the one at its start is true: a recording made up by joining two is found where they are joined, and
+  /// nowhere else.
   std::uint32_t sample = 100;
   /// Number that they are drawn by: whoever knows it when he makes a recording knows where nobody will look.
   std::uint64_t sampleSeed = 0;
