@@ -118,7 +118,7 @@ bool verifyUpTo(std::uint64_t tick, Replay<S>& replay, KeyframeWatch<S> keyframe
   }
 }
 
-/// Whether a stretch is among those of the sample.
+/// True if a stretch is among those of the sample.
 bool isDrawn(const VerifyOptions& options, std::size_t stretch, std::size_t stretches) {
   const auto drawn = [&](std::uint64_t number) {
     std::uint8_t bytes[8];

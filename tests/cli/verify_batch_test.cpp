@@ -111,7 +111,7 @@ TEST_F(VerifyBatchTest, AFileOfVerdictsIsWholeAndGoesOnFromWhatWasThere) {
   EXPECT_EQ(lines(contents(file("v.jsonl"))), 4u);
   EXPECT_THAT(contents(file("v.jsonl")), HasSubstr(all.substr(0, first)));
   EXPECT_FALSE(std::filesystem::exists(file("v.jsonl.other-1.part")));
-  // Asked something else, a verdict is another one.
+  // A verdict on another question is another one.
   EXPECT_THAT(
       run("verify --max-bodies 1000 --json -o " + quoted("v.jsonl") + " " + quoted("recordings")).error,
       Not(HasSubstr("were there")));
@@ -138,7 +138,7 @@ TEST_F(VerifyBatchTest, MergeKeepsEachVerdictOnceAndListsWhatIsMissing) {
   EXPECT_EQ(half.code, 1);
   EXPECT_THAT(half.error, HasSubstr(std::to_string(had) + " doubles"));
   EXPECT_EQ(lines(contents(file("missing"))), 5 - had);
-  // What is missing is a list that verify takes.
+  // The list of what is missing is one that verify takes.
   ASSERT_EQ(run("verify --json -o " + quoted("verdicts/2.jsonl") + " - <" + quoted("missing")).code, 0);
   const Outcome whole = run(merge);
   EXPECT_EQ(whole.code, 0);
@@ -208,7 +208,7 @@ TEST_F(VerifyBatchTest, ProcessesThatVerifyHaveNoNetworkAndWriteNothing) {
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.error;
   EXPECT_THAT(outcome.out, HasSubstr("1 claim holds"));
   EXPECT_EQ(contents(file("victim")), "mine");
-  // What it tries is something it could do otherwise.
+  // The game could do all of it otherwise.
   EXPECT_EQ(runProgram(SAMESTEP_PRYING_GAME, "verify " + quoted("a.rec")).code, 1);
 }
 #endif

@@ -93,7 +93,7 @@ constexpr long kRefused[] = {
     SYS_swapon,
     SYS_name_to_handle_at,
     SYS_open_by_handle_at,
-    // What does any of this by another way.
+    // Calls that do any of this by another way.
     SYS_io_uring_setup,
     SYS_io_uring_enter,
     SYS_io_uring_register,
@@ -188,7 +188,7 @@ class Filter {
     put(BPF_JMP | BPF_JEQ | BPF_K, value, 1, 0);
     put(BPF_RET | BPF_K, what);
   }
-  /// Of a call that opens files: only reading is left.
+  /// A call that opens files is left for reading only.
   void refuseWriting(long call, unsigned flags) {
     put(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, 4);
     loadArgument(flags);
@@ -196,7 +196,7 @@ class Filter {
     put(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM);
     put(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
   }
-  /// Of a call that signals: only to this process itself, as abort() does.
+  /// A call that signals is left for this process itself, as abort() needs it.
   void refuseOthers(long call) {
     put(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, 4);
     loadArgument(0);

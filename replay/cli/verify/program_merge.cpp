@@ -136,7 +136,7 @@ class Merger {
     ++doubles_;
     if (!place->second.verdict.settled && verdict.settled) place->second = {verdict, line};
   }
-  /// The same bytes have one verdict, whatever the file is called and whoever verified it.
+  /// Bytes that are the same have one verdict, whatever the file is called and whoever verified it.
   void compare(const Question& question, const VerdictLine& verdict) {
     if (!verdict.settled || verdict.content == std::string(16, '0')) return;
     const auto [place, isNew] = verdicts_.try_emplace(question, verdict.verdict);

@@ -103,7 +103,7 @@ struct Batch {
   Crew crew;
   std::string shard;
   std::string output;
-  std::uint32_t files = 100;  ///< Of a hundred.
+  std::uint32_t files = 100;  ///< Number of files, of a hundred.
   std::uint64_t seed = 0;
   bool telling = false;
 };

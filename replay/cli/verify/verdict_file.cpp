@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a file and what was asked of it; a name of a file has no byte 0.
+/// Key of a file and what was asked of it; a name of a file has no byte 0.
 std::string keyOf(const std::string& file, const std::string& content, const std::string& asked,
                   std::uint64_t verifier) {
   return file + std::string(1, '\0') + content + asked + std::to_string(verifier);

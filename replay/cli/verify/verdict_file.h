@@ -20,7 +20,7 @@ class VerdictFile {
   VerdictFile(const VerdictFile&) = delete;
   VerdictFile& operator=(const VerdictFile&) = delete;
 
-  /// Whether earlier runs left nothing.
+  /// True if earlier runs left nothing.
   bool isEmpty() const { return lines_.empty(); }
   /// The line that an earlier run left for a file with these bytes under these options; empty for none. One
   /// that came of too little time or memory is none.

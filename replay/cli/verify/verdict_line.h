@@ -11,18 +11,18 @@
 
 namespace samestep::program {
 
-/// What a line of `samestep verify --json` is about.
+/// Contents of a line of `samestep verify --json`.
 struct VerdictLine {
   std::string file;
   std::string content;  ///< 16 hexadecimal digits.
-  std::string asked;    ///< The same of the options that a verdict goes by.
+  std::string asked;    ///< Hash, as many digits, of the options that a verdict goes by.
   std::uint64_t verifier = 0;
   std::string verdict;
   bool settled = true;
   std::uint64_t ticks = 0;
   std::uint64_t milliseconds = 0;
 
-  /// What one verdict is about, whatever the file is called.
+  /// Question that one verdict answers, whatever the file is called.
   auto question() const { return std::tie(content, verifier, asked); }
 };
 

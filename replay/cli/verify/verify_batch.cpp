@@ -37,7 +37,7 @@ std::uint64_t littleEndian(const std::vector<std::uint8_t>& bytes, std::size_t a
   return value;
 }
 
-/// Of a step without commands.
+/// Bytes of a step without commands.
 constexpr std::uint64_t kStepBytes = 9;
 
 /// The size of a recording's first world, as its first bytes tell it.

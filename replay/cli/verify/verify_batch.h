@@ -14,7 +14,7 @@ namespace samestep::program {
 /// the lines of the standard input for "-". In an order that every machine gives them.
 /// @throws Unusable for a folder without any
 std::vector<std::string> filesNamed(const std::vector<std::string>& arguments);
-/// Whether it begins as recordings do.
+/// True if a file begins as recordings do.
 bool looksLikeRecording(const std::string& file);
 
 /// A file and the work it seems to be.
@@ -35,11 +35,11 @@ std::vector<std::string> sampleOf(const std::vector<std::string>& files, std::ui
 /// Shares jobs out, greatest first, each to the shard that has least: the same on every machine.
 std::vector<std::vector<Job>> shardsOf(std::vector<Job> jobs, std::uint64_t count);
 
-/// Who verifies.
+/// Processes that verify.
 struct Crew {
   int jobs = 1;
-  std::uint64_t megabytes = 0;  ///< Of memory that each process may have; 0 for any.
-  /// Whether there are processes for it even where one job has all the memory it wants.
+  std::uint64_t megabytes = 0;  ///< Memory that each process may have; 0 for any.
+  /// True if there are processes for it even where one job has all the memory it wants.
   bool apart = false;
   bool inOrder = true;
 };

@@ -64,8 +64,8 @@ bool readAll(int from, void* data, std::size_t size) {
   return true;
 }
 
-/// After so many files a process makes room for another: what one left behind, such as memory in pieces,
-/// ends.
+/// Number of files after which a process makes room for another: what it left behind, such as memory in
+/// pieces, ends with it.
 constexpr std::size_t kFilesOfAProcess = 1000;
 
 /// Verifies a file; a failure that cannot even be said is left to the parent, which finds the process gone.

@@ -21,7 +21,7 @@ enum class Verdict : std::uint8_t {
   otherRevision,  ///< It was made by another simulation revision, whose build can judge it.
   unusable,       ///< It cannot be read, or the world refuses what is done in it, or it outgrows the limits.
   stopped,        ///< VerifyOptions::progress said so.
-  sampled,  ///< What was looked at came out as recorded; the rest was left out, see VerifyOptions::sample.
+  sampled,  ///< Stretches looked at came out as recorded; the rest was left out, see VerifyOptions::sample.
 };
 /// "verified", "mismatch", "false claim", "unexpected", "incomplete", "other revision", "unusable",
 /// "stopped", "sampled".
