@@ -229,6 +229,14 @@ void samestep_shape_def_init(samestep_shape_def* def) {
   def->category = def->mask = 0xffffffffu;
 }
 
+void samestep_joint_def_init(samestep_joint_def* def) {
+  if (def == nullptr) return;
+  *def = {};
+  def->version = SAMESTEP_C_VERSION;
+  def->axis.x = 1;
+  def->damping = def->angular_damping = def->ratio = 1;
+}
+
 void samestep_command_init(samestep_command* command) {
   if (command == nullptr) return;
   *command = {};

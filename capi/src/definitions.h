@@ -2,6 +2,7 @@
 #pragma once
 
 #include <samestep/body.h>
+#include <samestep/joint.h>
 #include <samestep/settings.h>
 #include <samestep/shape.h>
 
@@ -27,6 +28,13 @@ BodyType toBodyType(std::int32_t type);
 /// @throws Refusal, and what Shape's setters throw
 template <Scalar S>
 Shape<S> toShape(BodyId body, const samestep_shape_def& from);
+
+/// A free joint.
+/// @throws Refusal; ValueOutOfRange for numbers that are not finite, other ranges are the Space's to check
+template <Scalar S>
+Joint<S> toJoint(const samestep_joint_def& from);
+template <Scalar S>
+samestep_joint_def toC(JointId id, const Joint<S>& from);
 
 template <Scalar S>
 samestep_contact_state toC(const Arbiter<S>& arbiter);

@@ -41,7 +41,8 @@ samestep_status samestep_world_list_events(samestep_world* world, int32_t contac
                                            double slowest_impact) {
   return call(world, [&]<class World>(World& of) {
     using S = typename World::Number;
-    of.space.setEventListing({contacts != 0, impacts != 0, number<S>(slowest_impact)});
+    of.space.setEventListing(
+        {contacts != 0, impacts != 0, number<S>(slowest_impact), of.space.eventListing().joints});
   });
 }
 
@@ -57,6 +58,28 @@ samestep_status samestep_world_get_events(samestep_world* world, samestep_events
     give(of.begins, events->begins, events->begin_count);
     give(of.ends, events->ends, events->end_count);
     give(of.impacts, events->impacts, events->impact_count);
+  });
+}
+
+samestep_status samestep_world_list_joint_events(samestep_world* world, int32_t joints) {
+  return call(world, [&](auto& of) {
+    auto listing = of.space.eventListing();
+    listing.joints = joints != 0;
+    of.space.setEventListing(listing);
+  });
+}
+
+samestep_status samestep_world_get_joint_events(samestep_world* world, const samestep_joint_event** events,
+                                                size_t* count) {
+  return call(world, [&](auto& of) {
+    at(events), at(count);
+    of.jointEvents.clear();
+    for (const auto& event : of.space.jointEvents()) {
+      of.jointEvents.push_back({toC(event.joint), toC(event.bodyA), toC(event.bodyB), event.userData,
+                                toVec2(event.force), toDouble(event.torque),
+                                static_cast<int32_t>(event.change), 0});
+    }
+    samestep::c::give(of.jointEvents, events, count);
   });
 }
 

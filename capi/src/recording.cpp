@@ -70,6 +70,12 @@ Command<S> toCommand(const samestep_command& from) {
       return Remove{body};
     case SAMESTEP_USER_INPUT:
       return toInput(from);
+    case SAMESTEP_JOIN:
+      return Join<S>{fromC<JointId>(current(from.joined).id), toJoint<S>(*from.joined)};
+    case SAMESTEP_ADJUST:
+      return Adjust<S>{fromC<JointId>(from.joint), toJoint<S>(current(from.joined))};
+    case SAMESTEP_UNJOIN:
+      return Unjoin{fromC<JointId>(from.joint)};
     default:
       refuse(SAMESTEP_UNKNOWN_VALUE);
   }

@@ -90,6 +90,8 @@ constexpr const char* kFaultNames[] = {
     "TOO_MANY_PAIRS",
     "INTERRUPTED",
     "LEFT_MIDWAY",
+    "JOINT_NOT_FOUND",
+    "ILLEGAL_JOINT",
 };
 constexpr samestep_status kFaultCount = std::size(kFaultNames);
 
@@ -106,6 +108,7 @@ static_assert(isStatus(Fault::BodyHasShapes, SAMESTEP_BODY_HAS_SHAPES));
 static_assert(isStatus(Fault::MalformedBytes, SAMESTEP_MALFORMED_BYTES));
 static_assert(isStatus(Fault::TooManyPairs, SAMESTEP_TOO_MANY_PAIRS));
 static_assert(isStatus(Fault::LeftMidway, SAMESTEP_LEFT_MIDWAY));
+static_assert(isStatus(Fault::IllegalJoint, SAMESTEP_ILLEGAL_JOINT));
 // Each fault has its name here and its number in the header.
 static_assert(std::size(kFaultNames) == kFaults);
 

@@ -121,6 +121,9 @@ struct WorldOf : samestep_world {
   std::vector<samestep_contact_event> begins;
   std::vector<samestep_contact_event> ends;
   std::vector<samestep_impact_event> impacts;
+  std::vector<samestep_joint_id> joints;
+  std::vector<samestep_body_id> connected;
+  std::vector<samestep_joint_event> jointEvents;
 };
 
 }  // namespace samestep::c

@@ -66,11 +66,13 @@ enum class Fault : std::uint8_t {
   UnsoundArithmetic,  ///< The processor is in a mode in which double gives other results.
   TooManyPairs,       ///< More shapes near each other than a Space may hold as pairs.
   Interrupted,        ///< A call that was to end, see Space::setInterrupt, or may do no more work.
-  LeftMidway,  ///< The world of a Space in which an exception ended a change midway; see Space::isUsable.
+  LeftMidway,     ///< The world of a Space in which an exception ended a change midway; see Space::isUsable.
+  JointNotFound,  ///< A joint id that names nothing.
+  IllegalJoint,   ///< A joint with a number out of range, or of a body with itself.
 };
 
 /// Number of faults.
-inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::LeftMidway) + 1;
+inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::IllegalJoint) + 1;
 
 /// The sentence of a fault that is told without values: the MIS's own where it has one. MIS: message
 const char* message(Fault fault);
@@ -210,6 +212,8 @@ using UnsoundArithmetic = FaultError<Fault::UnsoundArithmetic>;
 using TooManyPairs = FaultError<Fault::TooManyPairs>;
 using Interrupted = FaultError<Fault::Interrupted>;
 using LeftMidway = FaultError<Fault::LeftMidway>;
+using JointNotFound = FaultError<Fault::JointNotFound>;
+using IllegalJoint = FaultError<Fault::IllegalJoint>;
 
 /// Bytes from outside that cannot be used: where and why. Nothing has been changed by then.
 class FormatError : public MalformedBytes {

@@ -7,6 +7,7 @@
 #include <samestep/arbiter.h>
 #include <samestep/body.h>
 #include <samestep/id.h>
+#include <samestep/joint.h>
 
 namespace samestep {
 
@@ -72,12 +73,34 @@ struct ImpactEvent {
   friend constexpr bool operator==(const ImpactEvent&, const ImpactEvent&) = default;
 };
 
-/// Contact events that a Space lists: none at first, which costs nothing.
+/// What happened to a joint in a step.
+enum class JointChange : std::uint8_t {
+  broke = 0,         ///< It is gone: its force or torque was more than it bears.
+  reachedLower = 1,  ///< Its lower limit holds, and did not in the step before.
+  reachedUpper = 2,
+};
+
+template <Scalar S>
+struct JointEvent {
+  JointId joint;
+  BodyId bodyA;
+  BodyId bodyB;
+  JointChange change = JointChange::broke;
+  std::uint64_t userData = 0;
+  /// What it did to B in the step: N, N m.
+  Vector<S> force{};
+  S torque{};
+
+  friend constexpr bool operator==(const JointEvent&, const JointEvent&) = default;
+};
+
+/// Events of contacts and joints that a Space lists: none at first, which costs nothing.
 template <Scalar S>
 struct EventListing {
   bool contacts = false;  ///< Lists contacts that began and that ended.
   bool impacts = false;
   S slowestImpact{1};  ///< Slower impacts are not listed, m/s, 0 to 2^11.
+  bool joints = false;
 };
 
 /// Contact events of the last step, by rising ids of A and B.

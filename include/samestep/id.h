@@ -48,8 +48,10 @@ struct Id {
 
 struct BodyTag;
 struct ShapeTag;
+struct JointTag;
 using BodyId = Id<BodyTag>;
 using ShapeId = Id<ShapeTag>;
+using JointId = Id<JointTag>;
 
 /// An id within the records of one world, which need not say whose.
 template <class Tag>

@@ -15,6 +15,7 @@
 #include <samestep/events.h>
 #include <samestep/id.h>
 #include <samestep/interrupt.h>
+#include <samestep/joint.h>
 #include <samestep/kernel.h>
 #include <samestep/query.h>
 #include <samestep/remark.h>
@@ -127,7 +128,8 @@ class Space {
   /// The body for things that never move, always there. MIS: spaceGetStaticBody
   BodyId staticBody() const { return state_.staticBody; }
   /// Replaces it by a copy of a free static body.
-  /// @throws SpaceLocked; AttachedStaticBody while the old one has shapes; IllegalBody if it is not static;
+  /// @throws SpaceLocked; AttachedStaticBody while the old one has shapes or joints; IllegalBody if it is not
+  /// static;
   ///         DuplicateBody, AttachedBody
   /// MIS: spaceSetStaticBody
   BodyId setStaticBody(const Body<S>& body);
@@ -154,6 +156,7 @@ class Space {
   /// Adds a shape under an id of the caller's choice, as for bodies.
   /// @throws as add; IndexOutOfBounds, IllegalId
   ShapeId add(const Shape<S>& shape, ShapeId id);
+  /// Its joints go with it.
   /// @throws BodyNotFound, MainStaticBody, BodyHasShapes, SpaceLocked
   /// MIS: spaceRemoveBody
   void remove(BodyId id);
@@ -165,6 +168,57 @@ class Space {
   /// of them is gone and while the body weighs what it did. Linear in its shapes and in all pairs.
   /// @throws as the two
   void removeWithShapes(BodyId id);
+
+  // Joints.
+
+  /// Takes in a copy, which keeps nothing of where it came from. Bodies of any type may be joined; a joint of
+  /// two that nothing moves does nothing. Where the bodies stand apart they are drawn together from the next
+  /// step on.
+  /// @throws BodyNotFound; IllegalJoint for a number out of its range, see Joint, or one body twice;
+  ///         SpaceLocked
+  JointId add(const Joint<S>& joint);
+  /// The same under an id of the caller's choice, as for bodies.
+  /// @throws as add; IndexOutOfBounds, IllegalId
+  JointId add(const Joint<S>& joint, JointId id);
+  /// @throws JointNotFound, SpaceLocked
+  void remove(JointId id);
+  bool contains(JointId id) const { return state_.joints.contains(id); }
+  /// The next add, remove, restore or step ends it.
+  /// @throws JointNotFound
+  const Joint<S>& joint(JointId id) const;
+  /// Replaces a joint, all or nothing, also its bodies; it keeps its id and, of the same kind, its impulses.
+  /// @throws JointNotFound, and as add
+  void replace(JointId id, const Joint<S>& joint);
+  /// Changes a joint: `change(id, [](Joint<S>& joint) { joint.motorSpeed = speed; })`. All or nothing.
+  template <class Change>
+  void change(JointId id, Change&& apply) {
+    Joint<S> copy = joint(id);
+    apply(copy);
+    replace(id, copy);
+  }
+  std::uint32_t jointCount() const { return state_.joints.size(); }
+  /// Calls visit(JointId, const Joint<S>&) for each joint by rising id.
+  template <class Visit>
+  void eachJoint(Visit&& visit) const {
+    requireUsable();
+    state_.joints.each([&](JointId id, const Joint<S>& joint) { visit(id, joint); });
+  }
+  /// The same for those of one body. Looks at all joints.
+  /// @throws BodyNotFound
+  template <class Visit>
+  void eachJoint(BodyId of, Visit&& visit) const {
+    body(of);
+    state_.joints.each([&](JointId id, const Joint<S>& joint) {
+      if (joint.bodyA == of || joint.bodyB == of) visit(id, joint);
+    });
+  }
+  /// Calls visit(BodyId) for each body that joints connect with this one, directly or through others, by
+  /// rising id, the body itself left out. What nothing moves connects nothing beyond itself.
+  /// @throws BodyNotFound
+  template <class Visit>
+  void eachConnected(BodyId of, Visit&& visit) const {
+    for (const BodyId id : connectedTo(of)) visit(id);
+  }
 
   /// MIS: spaceContainsBody
   bool contains(BodyId id) const { return state_.bodies.contains(id); }
@@ -342,6 +396,8 @@ class Space {
   /// the order in which they came. It lives until the next step, or until a world is brought in, which leaves
   /// nothing listed. A step that is refused leaves it as it is.
   ContactEvents<S> contactEvents() const;
+  /// The same of joints, by rising id: those that broke, and those whose limits began to hold.
+  std::span<const JointEvent<S>> jointEvents() const;
   /// Iteration limits reached and the like.
   const CollisionStats& collisionStats() const;
   /// Number of steps that were to be fast but had numbers that do not fit, and were made accurately: see
@@ -432,6 +488,7 @@ class Space {
   std::uint64_t hash() const;
   std::uint64_t hash(BodyId id) const;
   std::uint64_t hash(ShapeId id) const;
+  std::uint64_t hash(JointId id) const;
   /// @throws LeftMidway
   const WorldState<S>& state() const {
     requireUsable();
@@ -497,6 +554,7 @@ class Space {
   /// Makes the ids of this world those of the Space of a number; see Id::space.
   void giveIds(std::uint32_t space);
   StepContext<S> contextOf(S dt = S(0));
+  std::vector<BodyId> connectedTo(BodyId of) const;
   std::uint32_t firstShape(BodyId id) const;
   std::uint32_t nextShape(std::uint32_t index) const;
   /// Calls visit(arbiter, data) for each touching pair, or for those of one body. Locks the Space.

@@ -7,6 +7,7 @@
 #include <samestep/arbiter.h>
 #include <samestep/body.h>
 #include <samestep/id.h>
+#include <samestep/joint.h>
 #include <samestep/limits.h>
 #include <samestep/settings.h>
 #include <samestep/shape.h>
@@ -43,6 +44,7 @@ struct WorldLimits {
   std::uint32_t shapes = 1u << 16;
   std::uint32_t pairs = kDefaultMaxPairs;
   std::uint32_t handlers = 1u << 12;
+  std::uint32_t joints = 1u << 16;
   /// Passes over all contacts in a step, by either solver: at most those that a Space takes.
   std::uint32_t iterations = 1000;
   std::uint32_t substeps = 100;
@@ -77,6 +79,7 @@ struct WorldState {
   std::vector<Pair<S>> restingPairs;
   /// Sorted by HandlerBinding::before.
   std::vector<HandlerBinding> handlers;
+  SlotMap<Joint<S>, JointId> joints;
 
   /// Calls visit(name, field) for each single field and visit(section, records) for each section, in the
   /// order of the canonical encoding; of several worlds with the fields or records of each. Encoding,
@@ -94,6 +97,7 @@ struct WorldState {
     visit(Section{"resting pair", "more resting pairs than allowed", &WorldLimits::restingPairs},
           worlds.restingPairs...);
     visit(Section{"handler", "more handlers than allowed", &WorldLimits::handlers}, worlds.handlers...);
+    visit(Section{"joint", "more joints than allowed", &WorldLimits::joints}, worlds.joints...);
   }
 };
 

@@ -114,6 +114,22 @@ struct Applier {
     space.removeWithShapes(c.body);
     return {};
   }
+  BodyId operator()(const Join<S>& c) const {
+    if (c.id.valid()) {
+      space.add(c.joint, c.id);
+    } else {
+      space.add(c.joint);
+    }
+    return {};
+  }
+  BodyId operator()(const Adjust<S>& c) const {
+    space.replace(c.id, c.joint);
+    return {};
+  }
+  BodyId operator()(const Unjoin& c) const {
+    space.remove(c.joint);
+    return {};
+  }
   BodyId operator()(const UserInput& c) const {
     require<Fault::MissingCallback>(wiring.applyInput != nullptr);
     wiring.applyInput(space, c.bytes, wiring.data);
@@ -143,6 +159,12 @@ const char* commandName(CommandKind kind) {
       return "remove";
     case CommandKind::userInput:
       return "input";
+    case CommandKind::join:
+      return "join";
+    case CommandKind::adjust:
+      return "adjust";
+    case CommandKind::unjoin:
+      return "unjoin";
   }
   return "unknown";
 }

@@ -41,6 +41,15 @@ struct CommandWriter {
       if (spawn.id.valid()) write.put(shape.id());
     }
   }
+  void operator()(const Join<S>& join) const { putJoint(join.id, join.joint); }
+  void operator()(const Adjust<S>& adjust) const { putJoint(adjust.id, adjust.joint); }
+  /// As the Space takes it: without what another one kept.
+  void putJoint(JointId id, Joint<S> joint) const {
+    joint.kept = {};
+    joint.latch = S(0);
+    write.put(id);
+    write.put(joint);
+  }
   void operator()(const UserInput& input) const { (*this)(std::span<const std::uint8_t>(input.bytes)); }
   void operator()(std::span<const std::uint8_t> input) const {
     write.put(static_cast<std::uint32_t>(input.size()));

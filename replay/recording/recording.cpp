@@ -63,6 +63,12 @@ class CommandReader {
         return plain<Remove>();
       case CommandKind::userInput:
         return input();
+      case CommandKind::join:
+        return joined<Join<S>>();
+      case CommandKind::adjust:
+        return joined<Adjust<S>>();
+      case CommandKind::unjoin:
+        return plain<Unjoin>();
     }
     failFormat(at, "unknown command");
   }
@@ -71,6 +77,21 @@ class CommandReader {
   template <class T>
   Command<S> plain() {
     return Command<S>(read_.template next<T>());
+  }
+
+  /// A command with a joint, whose impulses are none yet.
+  template <class T>
+  Command<S> joined() {
+    const std::uint64_t at = bytes_.offset();
+    T command = read_.template next<T>();
+    if (!command.id.valid() && command.id != JointId{}) {
+      failFormat(at, "an id without an index has a generation");
+    }
+    if (flawOfJoint(command.joint) != nullptr) failFormat(at, "a joint is out of range");
+    if (command.joint.kept != JointImpulses<S>() || command.joint.latch != S(0)) {
+      failFormat(at, "a new joint has kept something");
+    }
+    return command;
   }
 
   Command<S> spawn() {

@@ -10,6 +10,9 @@ namespace {
 /// True if the ids that a spawn asks for are beyond the limits: room is taken up to the highest.
 template <Scalar S>
 bool asksForMore(const Command<S>& command, const RecordingLimits& limits) {
+  if (const auto* join = std::get_if<Join<S>>(&command)) {
+    return join->id.valid() && join->id.index >= limits.joints;
+  }
   const auto* spawn = std::get_if<Spawn<S>>(&command);
   if (spawn == nullptr || !spawn->id.valid()) return false;
   for (const Shape<S>& shape : spawn->shapes) {

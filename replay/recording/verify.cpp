@@ -35,9 +35,9 @@ struct CommandWatch {
 
   static const char* sentence(CommandKind kind) {
     constexpr const char* kSentences[kCommandKinds] = {
-        "a command: impulse",         "a command: force",    "a command: velocity",
-        "a command: angularVelocity", "a command: position", "a command: angle",
-        "a command: spawn",           "a command: remove",   "a command: input"};
+        "a command: impulse",  "a command: force", "a command: velocity", "a command: angularVelocity",
+        "a command: position", "a command: angle", "a command: spawn",    "a command: remove",
+        "a command: input",    "a command: join",  "a command: adjust",   "a command: unjoin"};
     return kSentences[static_cast<std::size_t>(kind)];
   }
   static bool filter(const Command<S>& command, std::uint64_t offset, void* data) {

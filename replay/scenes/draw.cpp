@@ -28,6 +28,7 @@ class Artist {
     layer(BodyType::staticBody);
     layer(BodyType::kinematicBody);
     layer(BodyType::dynamicBody);
+    joints();
     velocities();
     contacts();
     labels();
@@ -196,6 +197,82 @@ class Artist {
     } else {
       filled(colours.fill, colours.line, unit_, style);
     }
+    out_ += "\n";
+  }
+
+  void stroke(const Vector<S>& from, const Vector<S>& to, const char* more = "") {
+    out_ += "<line" + place("x1", "y1", from) + place("x2", "y2", to) + more + "/>";
+  }
+  void dot(const Vector<S>& at, const char* fill) {
+    out_ += "<circle" + place("cx", "cy", at) + attribute("r", unit_ * S(4)) + " fill=\"" + fill + "\"/>";
+  }
+  /// A line to and fro.
+  void coil(const Vector<S>& from, const Vector<S>& to) {
+    constexpr int kTurns = 10;
+    const Vector<S> part = (to - from) * ratio<S>(1, kTurns);
+    const Vector<S> aside = perp(normalize(part)) * (unit_ * S(6));
+    Vector<S> last = from;
+    for (int i = 1; i < kTurns; ++i) {
+      const Vector<S> next = from + part * (S(i) - ratio<S>(1, 2)) + (i % 2 == 0 ? aside : -aside);
+      stroke(last, next);
+      last = next;
+    }
+    stroke(last, to);
+  }
+  /// The part of A's axis along which B may slide, or some of it where nothing ends it.
+  void rail(const Joint<S>& joint, const Body<S>& a, const Vector<S>& at) {
+    const Vector<S> axis = rotate(joint.axis, a.rotation());
+    const S reach = unit_ * S(60);
+    const auto end = [&](S limit) { return clamp(limit, -(width_ + height_), width_ + height_); };
+    stroke(at + axis * (joint.limited != 0 ? end(joint.lower) : -reach),
+           at + axis * (joint.limited != 0 ? end(joint.upper) : reach));
+  }
+  /// Of an angle held, or free: a circle about the centre of B, with a spoke where it is turned.
+  void dial(const Body<S>& b) {
+    const Vector<S> center = b.worldCenter();
+    out_ += "<circle" + place("cx", "cy", center) + attribute("r", unit_ * S(16)) + " fill=\"none\"/>";
+    stroke(center, center + b.rotation() * (unit_ * S(16)));
+  }
+
+  /// Each as what it is: a pin, a rail, a rod, a rope, a coil; from the centres of the bodies to where it
+  /// holds them.
+  void joints() {
+    if (space_.jointCount() == 0) return;
+    out_ +=
+        "<g stroke=\"#3b3b3b\" stroke-linecap=\"round\"" + attribute("stroke-width", unit_ * S(2)) + ">\n";
+    space_.eachJoint([&](JointId, const Joint<S>& joint) { drawJoint(joint); });
+    out_ += "</g>\n";
+  }
+  void drawJoint(const Joint<S>& joint) {
+    const Body<S>&a = space_.body(joint.bodyA), &b = space_.body(joint.bodyB);
+    const Vector<S> atA = a.toWorld(joint.anchorA), atB = b.toWorld(joint.anchorB);
+    const char* thin = " stroke-opacity=\"0.45\"";
+    switch (joint.kind) {
+      case JointKind::gear:
+      case JointKind::ratchet:
+        stroke(a.worldCenter(), b.worldCenter(), " stroke-dasharray=\"0.05\" stroke-opacity=\"0.45\"");
+        return dial(b);
+      case JointKind::distance:
+      case JointKind::target:
+        if (joint.hertz != S(0)) {
+          coil(atA, atB);
+        } else {
+          stroke(atA, atB, joint.limited != 0 ? " stroke-dasharray=\"0.05\"" : "");
+        }
+        break;
+      case JointKind::prismatic:
+      case JointKind::wheel:
+        rail(joint, a, atA);
+        if (joint.spring != 0) coil(atA, atB);
+        break;
+      case JointKind::revolute:
+      case JointKind::weld:
+        if (a.type() != BodyType::staticBody) stroke(a.worldCenter(), atA, thin);
+        stroke(b.worldCenter(), atB, thin);
+        break;
+    }
+    dot(atA, joint.kind == JointKind::weld ? "#3b3b3b" : "#ffffff");
+    dot(atB, joint.kind == JointKind::weld ? "#3b3b3b" : "#ffd34d");
     out_ += "\n";
   }
 

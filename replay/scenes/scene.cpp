@@ -7,6 +7,14 @@
 namespace samestep {
 namespace {
 
+/// The joint that a command is for, or one that is not valid().
+template <Scalar S>
+JointId jointOf(const Command<S>& command) {
+  if (const auto* adjust = std::get_if<Adjust<S>>(&command)) return adjust->id;
+  if (const auto* unjoin = std::get_if<Unjoin>(&command)) return unjoin->joint;
+  return {};
+}
+
 /// The body that a command is for; null for a spawn or a user's input.
 template <Scalar S>
 BodyId* targetOf(Command<S>& command) {
@@ -36,6 +44,8 @@ const Command<S>* Scene<S>::nextCommand() {
     if (BodyId* target = targetOf(event.command)) {
       *target = names_[event.name];
       if (!space_.contains(*target)) continue;
+    } else if (const JointId joint = jointOf(event.command); joint.valid()) {
+      if (!space_.contains(joint)) continue;
     } else if (kindOf(event.command) == CommandKind::spawn) {
       names_[event.name] = space_.state().bodies.nextId();
     }

@@ -33,8 +33,8 @@ void SceneBuilder<S>::build() {
 template <Scalar S>
 void SceneBuilder<S>::buildFile() {
   const Cursor root(document_.root, document_.file);
-  root.allow(
-      {"samestep", "about", "ticks", "stepsPerSecond", "settings", "handlers", "bodies", "events", "inputs"});
+  root.allow({"samestep", "about", "ticks", "stepsPerSecond", "settings", "handlers", "bodies", "joints",
+              "events", "inputs"});
   root.at("samestep").integer(1, 1);
   if (root.has("about")) root.at("about").text();
   if (root.has("ticks")) root.at("ticks").integer(1, 1u << 20);
@@ -44,6 +44,7 @@ void SceneBuilder<S>::buildFile() {
   if (root.has("settings")) readSettings(scene_.space_, root.at("settings"));
   if (root.has("handlers")) readHandlers(root.at("handlers"));
   if (root.has("bodies")) readBodies(root.at("bodies"));
+  if (root.has("joints")) readJoints(root.at("joints"));
   if (root.has("events")) readEvents(root.at("events"));
   if (root.has("inputs")) readInputs(root.at("inputs"));
   const auto byTick = [](const Event& a, const Event& b) { return a.tick < b.tick; };

@@ -33,6 +33,10 @@ class SceneBuilder {
  private:
   using Event = typename Scene<S>::Event;
   static constexpr std::uint32_t kNoName = 0xffffffffu;
+  struct NamedJoint {
+    JointId id;
+    Joint<S> joint;
+  };
 
   void buildFile();
   void buildPyramid(std::uint32_t rows);
@@ -42,6 +46,13 @@ class SceneBuilder {
   void readBodies(const Cursor& at);
   void readCsvBodies(const Cursor& at);
   void readGrid(const Cursor& at, const Spawn<S>& body, const std::string& name);
+  void readJoints(const Cursor& at);
+  void readJoint(const Cursor& at);
+  void readJointFields(const Cursor& at, Joint<S>& joint);
+  void addJoint(const Cursor& at, Joint<S> joint, const std::string& number);
+  BodyId jointBody(const Cursor& at, const std::string& suffix) const;
+  NamedJoint& jointNamed(const Cursor& at);
+  void readJointEvent(const Cursor& at, CommandKind kind, std::uint64_t tick);
   void readEvents(const Cursor& at);
   void readInputs(const Cursor& at);
 
@@ -64,6 +75,7 @@ class SceneBuilder {
   Scene<S>& scene_;
   const SceneSource::Document& document_;
   std::map<std::string, std::uint32_t> names_;
+  std::map<std::string, NamedJoint> joints_;
 };
 
 }  // namespace samestep

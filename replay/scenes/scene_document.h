@@ -28,9 +28,10 @@ struct SceneSource::Document {
   std::string read(const std::string& path) const;
 };
 
-/// A scene may have so many bodies, shapes and events, and each of its files so many bytes.
+/// A scene may have so many bodies, shapes, joints and events, and each of its files so many bytes.
 inline constexpr std::uint32_t kMaxSceneBodies = 65536;
 inline constexpr std::uint32_t kMaxSceneShapes = 65536;
+inline constexpr std::uint32_t kMaxSceneJoints = 65536;
 inline constexpr std::uint32_t kMaxSceneEvents = 1u << 20;
 inline constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
 

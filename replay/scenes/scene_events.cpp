@@ -14,7 +14,8 @@ constexpr std::uint64_t kMaxTick = std::uint64_t{1} << 40;
 std::optional<CommandKind> kindOfWord(std::string_view word) {
   for (std::uint8_t i = 0; i < kCommandKinds; ++i) {
     const auto kind = static_cast<CommandKind>(i);
-    if (word == commandName(kind) && kind != CommandKind::userInput) return kind;
+    const bool isForScenes = kind != CommandKind::userInput && kind != CommandKind::join;
+    if (word == commandName(kind) && isForScenes) return kind;
   }
   return std::nullopt;
 }
@@ -53,6 +54,8 @@ int numbersOf(CommandKind kind) {
       return 2;
   }
 }
+
+bool isForJoint(CommandKind kind) { return kind == CommandKind::adjust || kind == CommandKind::unjoin; }
 
 bool takesArm(CommandKind kind) {
   return kind == CommandKind::applyImpulse || kind == CommandKind::applyForce;
@@ -104,6 +107,7 @@ void SceneBuilder<S>::readEvent(const Cursor& at, std::uint32_t spawned) {
   const Cursor word = at.at("do");
   const std::optional<CommandKind> kind = kindOfWord(word.text());
   if (!kind) word.fail("no command of this name");
+  if (isForJoint(*kind)) return readJointEvent(at, *kind, at.at("tick").integer(1, kMaxTick));
   const int numbers = numbersOf(*kind);
   if (takesArm(*kind)) {
     at.allow({"tick", "do", "body", "value", "arm"});
@@ -157,7 +161,7 @@ void SceneBuilder<S>::readInputs(const Cursor& at) {
     const std::uint32_t name = nameOf(std::string(fields[1]));
     if (name == kNoName) fail("no body is named \"" + std::string(fields[1]) + "\"");
     const std::optional<CommandKind> kind = kindOfWord(fields[2]);
-    if (!kind || *kind == CommandKind::spawn)
+    if (!kind || *kind == CommandKind::spawn || isForJoint(*kind))
       fail("no command \"" + std::string(fields[2]) + "\" for inputs");
     const int numbers = numbersOf(*kind);
     S value[2]{};

@@ -86,6 +86,8 @@ constexpr FaultMessage kMessages[] = {
     {Fault::Interrupted, "The call was to end; a world that it was changing must be restored."},
     {Fault::LeftMidway,
      "A call that failed left this world midway: restore one, or bring one in, before anything else."},
+    {Fault::JointNotFound, "This id names no joint of this Space."},
+    {Fault::IllegalJoint, "A joint has a number out of its range, or two ends on one body."},
 };
 
 constexpr bool eachFaultHasItsMessage() {

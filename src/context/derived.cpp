@@ -108,6 +108,25 @@ void Derived<S>::restoreFrom(const Derived& saved, const WorldState<S>& world) {
 }
 
 template <Scalar S>
+void Derived<S>::findKeptApart(const WorldState<S>& world) {
+  if (jointedKnown) return;
+  keptApart.clear();
+  world.joints.each([&](JointId, const Joint<S>& joint) {
+    if (joint.collideConnected != 0) return;
+    const std::uint32_t a = joint.bodyA.index, b = joint.bodyB.index;
+    keptApart.push_back(std::uint64_t{min(a, b)} << 32 | max(a, b));
+  });
+  // total order: those that are equal are the same.
+  std::sort(keptApart.begin(), keptApart.end());
+  jointedKnown = true;
+}
+
+template <Scalar S>
+bool Derived<S>::areKeptApart(std::uint32_t a, std::uint32_t b) const {
+  return std::binary_search(keptApart.begin(), keptApart.end(), std::uint64_t{min(a, b)} << 32 | max(a, b));
+}
+
+template <Scalar S>
 void Derived<S>::completePairs(WorldState<S>& world) {
   if (!surfacesLacking) return;
   surfacesLacking = false;

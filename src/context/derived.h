@@ -212,6 +212,10 @@ struct Derived {
   std::vector<std::uint8_t> sleeps;
   /// How many sleepers there are at most; kNone where nobody has counted.
   std::uint32_t mostSleepers = kNone;
+  // Bodies whose joints keep their shapes from colliding, as pairs of slots, sorted; until a joint comes,
+  // goes or changes.
+  bool jointedKnown = false;
+  std::vector<std::uint64_t> keptApart;
 
   /// Computes all that was forgotten.
   void ensure(const WorldState<S>& world) {
@@ -221,6 +225,7 @@ struct Derived {
   void forget() {
     cached = false;
     bodyPairs.known = restingPairs.known = false;
+    jointedKnown = false;
     forgetWhoMoves();
   }
   void forgetWhoMoves() {
@@ -251,6 +256,9 @@ struct Derived {
       }
     }
   }
+  /// Finds the pairs of bodies that joints keep from colliding, unless it is known.
+  void findKeptApart(const WorldState<S>& world);
+  bool areKeptApart(std::uint32_t a, std::uint32_t b) const;
   /// Sets the surfaces of pairs that came from elsewhere.
   void completePairs(WorldState<S>& world);
   /// Sets the surfaces of a pair to what its shapes have.

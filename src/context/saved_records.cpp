@@ -157,6 +157,10 @@ struct Unpack {
     forgetResults(pair);
   }
   static void unpack(Reader& read, HandlerBinding& binding) { read.get(binding); }
+  static void unpack(Reader& read, Joint<S>& joint) {
+    read.get(joint);
+    forgetResults(joint);
+  }
 };
 
 /// Adds a number unless it is 0 or there.

@@ -47,6 +47,8 @@ struct StepEvents {
   CollisionStats collisionStats{};
   std::uint64_t accurateInstead = 0;
   ContactLists<S> contacts;
+  /// By rising joint, of one joint by change.
+  std::vector<JointEvent<S>> joints;
   /// Bits of Body::Held that the step under way noted, by body slot.
   std::vector<std::uint8_t> held;
 

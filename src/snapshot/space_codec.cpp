@@ -124,6 +124,7 @@ class WorldReader {
     }
     return check_.flawOf(pair);
   }
+  const char* accept(JointId id, const Joint<S>& joint) { return check_.flawOf(id, joint); }
   const char* accept(const HandlerBinding& binding) { return check_.flawOf(binding); }
 
   ByteReader& bytes_;

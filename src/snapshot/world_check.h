@@ -96,6 +96,12 @@ class WorldCheck {
   /// @param shape  stays where it is as long as this object lives
   const char* flawOf(ShapeId id, const Shape<S>& shape);
   const char* flawOf(const Pair<S>& pair) const;
+  const char* flawOf(JointId, const Joint<S>& joint) const {
+    if (flawOfJoint(joint) != nullptr) return "a joint is out of range";
+    const bool both = world_.bodies.contains(joint.bodyA) && world_.bodies.contains(joint.bodyB);
+    if (!both) return "a joint is on a body that does not exist";
+    return joint.bodyA == joint.bodyB ? "a joint is of one body" : nullptr;
+  }
   /// Of both lists of pairs, when they are read.
   const char* flawOfRest() const;
   const char* flawOf(const HandlerBinding& binding) const {

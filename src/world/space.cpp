@@ -7,6 +7,7 @@
 
 #include "base/change.h"
 #include "base/require_ieee.h"
+#include "world/joints.h"
 #include "world/objects.h"
 #include "world/queries.h"
 #include "world/space_contacts.h"
@@ -57,6 +58,7 @@ template <Scalar S>
 void Space<S>::giveIds(std::uint32_t space) {
   state_.bodies.setSpace(space);
   state_.shapes.setSpace(space);
+  state_.joints.setSpace(space);
   state_.staticBody.space = space;
 }
 
@@ -100,6 +102,8 @@ BodyId Space<S>::setStaticBody(const Body<S>& body) {
   requireUnlocked();
   require<Fault::AttachedStaticBody>(firstShape(staticBody()) == ShapeId::kNoIndex,
                                      "Space::setStaticBody: the present one, ", staticBody(), ", has shapes");
+  require<Fault::AttachedStaticBody>(!Joints<S>::hasAny(state_, staticBody()),
+                                     "Space::setStaticBody: the present one, ", staticBody(), ", has joints");
   require<Fault::IllegalBody>(body.type() == BodyType::staticBody,
                               "Space::setStaticBody: the body is not static");
 
@@ -118,6 +122,7 @@ void Space<S>::remove(BodyId id) {
                                 " has shapes; see Space::removeWithShapes");
 
   StepContext<S> world = contextOf();
+  Joints<S>::eraseOf(world, id);
   Objects<S>::erase(world, id);
 }
 
@@ -128,6 +133,7 @@ void Space<S>::removeWithShapes(BodyId id) {
   requireNotMain(id, state_.staticBody, "Space::removeWithShapes");
   LockGuard guard(*this);
   StepContext<S> world = contextOf();
+  Joints<S>::eraseOf(world, id);
   Objects<S>::eraseWithShapes(world, id);
   guard.finish();
 }
@@ -246,6 +252,54 @@ void Space<S>::reindexShapesForBody(BodyId id) {
   parts_->derived.refresh(state_);
 }
 
+// Joints.
+
+template <Scalar S>
+JointId Space<S>::add(const Joint<S>& joint) {
+  requireUnlocked();
+  StepContext<S> world = contextOf();
+  const JointId id = state_.joints.nextId();
+  require<Fault::IllegalSize>(id.index < JointId::kNoIndex);
+  Joints<S>::insert(world, joint, id);
+  return id;
+}
+
+template <Scalar S>
+JointId Space<S>::add(const Joint<S>& joint, JointId id) {
+  requireUnlocked();
+  StepContext<S> world = contextOf();
+  state_.joints.checkGiven(id);
+  Joints<S>::insert(world, joint, id);
+  return state_.joints.idAt(id.index);
+}
+
+template <Scalar S>
+void Space<S>::remove(JointId id) {
+  requireUnlocked();
+  state_.joints.template requireAlive<Fault::JointNotFound>(id, "Space::remove");
+  StepContext<S> world = contextOf();
+  Joints<S>::erase(world, id);
+}
+
+template <Scalar S>
+const Joint<S>& Space<S>::joint(JointId id) const {
+  requireUsable();
+  return state_.joints.template at<Fault::JointNotFound>(id, "Space::joint");
+}
+
+template <Scalar S>
+void Space<S>::replace(JointId id, const Joint<S>& joint) {
+  requireUnlocked();
+  StepContext<S> world = contextOf();
+  Joints<S>::replace(world, id, joint);
+}
+
+template <Scalar S>
+std::vector<BodyId> Space<S>::connectedTo(BodyId of) const {
+  body(of);
+  return Joints<S>::connectedTo(state_, of);
+}
+
 // Stepping.
 
 template <Scalar S>
@@ -288,6 +342,11 @@ template <Scalar S>
 ContactEvents<S> Space<S>::contactEvents() const {
   const ContactLists<S>& lists = parts_->events.contacts;
   return {lists.tick, lists.begins, lists.ends, lists.impacts};
+}
+
+template <Scalar S>
+std::span<const JointEvent<S>> Space<S>::jointEvents() const {
+  return parts_->events.joints;
 }
 
 template <Scalar S>

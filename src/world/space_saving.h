@@ -46,6 +46,7 @@ void checkAdoptable(const SpaceWiring<S>& wiring, const WorldState<S>& state) {
 template <Scalar S>
 struct GiveObjects {
   S worldExtent;
+  std::uint32_t space;
 
   template <class T>
   void operator()(const char*, T&) {}
@@ -57,19 +58,22 @@ struct GiveObjects {
   }
   void give(Body<S>& body, BodyId id) { BodyAccess<S>::attach(body, id, worldExtent); }
   void give(Shape<S>& shape, ShapeId id) { shape.attach(id); }
+  void give(Joint<S>& joint, JointId) { joint.bodyA.space = joint.bodyB.space = space; }
 };
 
 /// Makes a state that came from elsewhere the Space's own.
 template <Scalar S>
 void takeOver(StepContext<S> world) {
   ++world.wiring.worldsBroughtIn;
-  WorldState<S>::sections(GiveObjects<S>{world.state.settings.worldExtent}, world.state);
+  WorldState<S>::sections(GiveObjects<S>{world.state.settings.worldExtent, world.state.bodies.space()},
+                          world.state);
   world.wiring.bound.take(world.state.handlers, world.wiring.handlers);
   world.derived.shapesHashKnown = false;
   world.derived.forget();
   world.derived.surfacesLacking = true;
   world.events.range.clear();
   world.events.contacts.clear();
+  world.events.joints.clear();
 }
 
 }  // namespace
@@ -145,6 +149,11 @@ std::uint64_t Space<S>::hash(BodyId id) const {
 template <Scalar S>
 std::uint64_t Space<S>::hash(ShapeId id) const {
   return hashOf(shape(id));
+}
+
+template <Scalar S>
+std::uint64_t Space<S>::hash(JointId id) const {
+  return hashOf(joint(id));
 }
 
 }  // namespace samestep

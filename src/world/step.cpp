@@ -8,6 +8,7 @@
 #include "contacts/stages/contact_callbacks.h"
 #include "contacts/stages/list_contacts.h"
 #include "dynamics/stages/integrate.h"
+#include "joints/stages/tell_joints.h"
 #include "world/stage_expectations.h"
 
 namespace samestep {
@@ -66,6 +67,7 @@ std::span<const typename Step<S>::Line> Step<S>::lines(SolverKind solver) {
 template <Scalar S>
 void Step<S>::tellResults(StepContext<S>& step) {
   ContactCallbacks<S>::postSolve(step);
+  TellJoints<S>::run(step);
   step.events.listRange(step.state, step.derived.active);
   ListContacts<S>::finish(step);
 }

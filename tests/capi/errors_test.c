@@ -247,7 +247,8 @@ static void test_names(void) {
   check(strcmp(samestep_status_name(SAMESTEP_TOO_MANY_PAIRS), "TOO_MANY_PAIRS") == 0, "the last name",
         __LINE__);
   check(strcmp(samestep_status_name(SAMESTEP_OK), "OK") == 0, "the first name", __LINE__);
-  check(named == 11 + SAMESTEP_LEFT_MIDWAY - SAMESTEP_ATTACHED_BODY + 1, "all others are unknown", __LINE__);
+  check(named == 11 + SAMESTEP_ILLEGAL_JOINT - SAMESTEP_ATTACHED_BODY + 1, "all others are unknown",
+        __LINE__);
 }
 
 static void test_creation(void) {

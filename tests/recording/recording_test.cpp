@@ -44,11 +44,20 @@ TYPED_TEST(RecordingTest, KeepsEveryCommandAndHash) {
     if (item == RecordingItem::step) ++steps;
   }
   EXPECT_EQ(steps, 24u);
-  const std::vector<CommandKind> all = {
-      CommandKind::applyImpulse, CommandKind::applyForce,         CommandKind::spawn,
-      CommandKind::setVelocity,  CommandKind::setAngularVelocity, CommandKind::userInput,
-      CommandKind::setPosition,  CommandKind::setAngle,           CommandKind::spawn,
-      CommandKind::remove};
+  const std::vector<CommandKind> all = {CommandKind::applyImpulse,
+                                        CommandKind::applyForce,
+                                        CommandKind::spawn,
+                                        CommandKind::setVelocity,
+                                        CommandKind::setAngularVelocity,
+                                        CommandKind::userInput,
+                                        CommandKind::setPosition,
+                                        CommandKind::setAngle,
+                                        CommandKind::spawn,
+                                        CommandKind::join,
+                                        CommandKind::adjust,
+                                        CommandKind::join,
+                                        CommandKind::unjoin,
+                                        CommandKind::remove};
   EXPECT_EQ(kinds, all);
 }
 

@@ -10,6 +10,7 @@
 #include <samestep/space.h>
 #include "state/state_hash.h"
 #include "support/fields.h"
+#include "support/joints.h"
 #include "support/scalars.h"
 #include "support/world.h"
 
@@ -47,6 +48,7 @@ TYPED_TEST(FieldsTest, RecordsOfMovingThingsAreTriviallyCopyable) {
   static_assert(std::is_trivially_copyable_v<Pair<S>>);
   static_assert(std::is_trivially_copyable_v<Settings<S>>);
   static_assert(std::is_trivially_copyable_v<HandlerBinding>);
+  static_assert(std::is_trivially_copyable_v<Joint<S>>);
 }
 
 // These bytes are not visited: numbers that follow from the others, what only the step that wrote it and
@@ -75,6 +77,8 @@ TYPED_TEST(FieldsTest, FieldsAccountForEveryByte) {
             sizeof(Pair<S>));
   EXPECT_EQ(leavesOf(Settings<S>()).bytes() + 2, sizeof(Settings<S>));
   EXPECT_EQ(leavesOf(HandlerBinding()).bytes() + 3, sizeof(HandlerBinding));
+  constexpr std::size_t kSpaces = 8, kResults = 3 * sizeof(S) + 1, kJointFiller = 2;
+  EXPECT_EQ(leavesOf(Joint<S>()).bytes() + kSpaces + kResults + kJointFiller, sizeof(Joint<S>));
 }
 
 TYPED_TEST(FieldsTest, TheHashOfARecordSeesEveryField) {
@@ -87,6 +91,7 @@ TYPED_TEST(FieldsTest, TheHashOfARecordSeesEveryField) {
   this->expectEveryFieldHashed(Pair<S>());
   this->expectEveryFieldHashed(Settings<S>());
   this->expectEveryFieldHashed(HandlerBinding());
+  this->expectEveryFieldHashed(Joint<S>());
 }
 
 // In the world's hash each record counts, at each place.
@@ -98,6 +103,7 @@ TYPED_TEST(FieldsTest, TheHashOfTheWorldSeesEveryFieldOfEveryRecord) {
   space.addCollisionHandler(1, 2, 1);
   for (int i = 0; i < 3; ++i) addDisc<S>(space, {ratio<S>(3 * i, 2), S(0)}, S(1), S(1), {S(1 - i), S(0)});
   addResting(space, {S(20), S(0)});
+  joinNeighbours(space);
   space.step(kTick<S>);
   WorldState<S> world = space.state();
   ASSERT_EQ(world.pairs.size(), 2u);
@@ -120,6 +126,7 @@ TYPED_TEST(FieldsTest, TheHashOfTheWorldSeesEveryFieldOfEveryRecord) {
   for (Pair<S>& pair : world.pairs) check(pair);
   for (Pair<S>& pair : world.restingPairs) check(pair);
   for (HandlerBinding& binding : world.handlers) check(binding);
+  for (std::uint32_t i = 0; i < world.joints.slots(); ++i) check(world.joints.valueAt(i));
   const auto changes = [&](auto& number) {
     const auto kept = number;
     number = number + std::remove_cvref_t<decltype(number)>(1);

@@ -14,6 +14,7 @@
 #include "context/saved_records.h"
 #include "state/state_hash.h"
 #include "support/fields.h"
+#include "support/joints.h"
 #include "support/scalars.h"
 #include "support/world.h"
 
@@ -29,6 +30,7 @@ class SectionsTest : public ::testing::Test {
     space_.addCollisionHandler(1, 2, 1);
     for (int i = 0; i < 3; ++i) addDisc<S>(space_, {ratio<S>(3 * i, 2), S(0)}, S(1), S(1));
     addResting(space_, {S(20), S(0)});
+    joinNeighbours(space_);
     space_.step(kTick<S>);
   }
   static std::vector<std::uint8_t> bytesOf(const WorldState<S>& world) {
@@ -190,6 +192,13 @@ TYPED_TEST(SectionsTest, EachRecordIsChecked) {
   EXPECT_EQ(flawAfter([](auto& w) { w.restingPairs.insert(w.restingPairs.begin(), w.pairs[0]); }),
             "a pair is there twice");
   EXPECT_EQ(flawAfter([](auto& w) { w.handlers[0].number = 0; }), "a handler is malformed");
+  EXPECT_EQ(flawAfter([](auto& w) { w.joints.valueAt(0).lower = S(1); }), "a joint is out of range");
+  EXPECT_EQ(flawAfter([](auto& w) {
+              w.joints.valueAt(0).bodyA = BodyId{4000, 1};
+            }),
+            "a joint is on a body that does not exist");
+  EXPECT_EQ(flawAfter([](auto& w) { w.joints.valueAt(0).bodyA = w.joints.valueAt(0).bodyB; }),
+            "a joint is of one body");
 }
 
 TYPED_TEST(SectionsTest, AListOutOfOrderIsAFlawOfTheWorld) {
@@ -214,6 +223,8 @@ TYPED_TEST(SectionsTest, TheBytesOfASavedWorldCountEachOfThem) {
   };
   space.addCollisionHandler(3, 4, 1);
   EXPECT_EQ(grown(), leavesOf(HandlerBinding()).bytes());
+  joinNeighbours(space);
+  EXPECT_EQ(grown(), 2 * (leavesOf(Joint<S>()).bytes() + sizeof(std::uint32_t)));
   const ShapeId disc = addDisc<S>(space, {S(1), S(1)}, S(1), S(1));
   EXPECT_GE(grown(), leavesOf(Body<S>()).bytes() + sizeof(Shape<S>) + 2 * sizeof(std::uint32_t));
   const std::size_t pairs = space.state().pairs.size();

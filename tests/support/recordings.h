@@ -81,6 +81,17 @@ BodyId fillSmall(Space<S>& space) {
   return space.shape(top).body();
 }
 
+/// A body hung on a nail beside it, and turned by a motor.
+template <Scalar S>
+Joint<S> doorTo(const Space<S>& space, BodyId body, S speed = S(1)) {
+  const Vector<S> aside(ratio<S>(1, 2), S(0));
+  Joint<S> joint = revoluteJoint<S>(space.staticBody(), body, space.body(body).toWorld(aside), aside);
+  joint.motor = 1;
+  joint.motorSpeed = speed;
+  joint.motorMax = S(20);
+  return joint;
+}
+
 /// A match of `ticks` steps with each kind of command in it.
 template <Scalar S>
 Bytes recordSmallMatch(std::uint32_t ticks = 24, const KeyframeBudget& keyframes = {}, bool packing = false) {
@@ -101,6 +112,10 @@ Bytes recordSmallMatch(std::uint32_t ticks = 24, const KeyframeBudget& keyframes
     if (tick == 8) recorder.apply(SetPosition<S>{spawned, {S(4), S(3)}});
     if (tick == 9) recorder.apply(SetAngle<S>{spawned, S(1)});
     if (tick == 10) recorder.apply(underGivenIds(discToSpawn<S>(), {12, 3}, {9, 1}));
+    if (tick == 11) recorder.apply(Join<S>{{3, 1}, doorTo(space, player)});
+    if (tick == 12) recorder.apply(Adjust<S>{{3, 1}, doorTo(space, player, S(-1))});
+    if (tick == 13) recorder.apply(Join<S>{{}, doorTo(space, spawned)});
+    if (tick == 18) recorder.apply(Unjoin{{3, 1}});
     if (tick == 20) recorder.apply(Remove{spawned});
     recorder.step();
   }

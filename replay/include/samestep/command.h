@@ -123,10 +123,48 @@ struct UserInput {
   std::vector<std::uint8_t> bytes;
 };
 
+/// A new joint; see Space::add.
+template <Scalar S>
+struct Join {
+  /// The id it shall have. Not valid(): the world gives it.
+  JointId id{};
+  Joint<S> joint{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("id", self.id);
+    visit("joint", self.joint);
+  }
+};
+
+/// Another joint in place of one: other limits, another motor; see Space::replace.
+template <Scalar S>
+struct Adjust {
+  JointId id{};
+  Joint<S> joint{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("id", self.id);
+    visit("joint", self.joint);
+  }
+};
+
+/// Takes a joint away.
+struct Unjoin {
+  JointId joint{};
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("joint", self.joint);
+  }
+};
+
 /// Anything that happens to a world from outside. The order of the alternatives is that of CommandKind.
 template <Scalar S>
-using Command = std::variant<ApplyImpulse<S>, ApplyForce<S>, SetVelocity<S>, SetAngularVelocity<S>,
-                             SetPosition<S>, SetAngle<S>, Spawn<S>, Remove, UserInput>;
+using Command =
+    std::variant<ApplyImpulse<S>, ApplyForce<S>, SetVelocity<S>, SetAngularVelocity<S>, SetPosition<S>,
+                 SetAngle<S>, Spawn<S>, Remove, UserInput, Join<S>, Adjust<S>, Unjoin>;
 
 /// Kind of a command in a recording.
 enum class CommandKind : std::uint8_t {
@@ -139,8 +177,11 @@ enum class CommandKind : std::uint8_t {
   spawn = 6,
   remove = 7,
   userInput = 8,
+  join = 9,
+  adjust = 10,
+  unjoin = 11,
 };
-inline constexpr std::uint8_t kCommandKinds = 9;
+inline constexpr std::uint8_t kCommandKinds = 12;
 
 template <Scalar S>
 CommandKind kindOf(const Command<S>& command) {

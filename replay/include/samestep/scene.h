@@ -107,7 +107,7 @@ class Scene {
   std::uint64_t tick() const { return space_.stamp(); }
 
   /// The next command due before the coming step, or null. It is to be applied before the next call. Events
-  /// for bodies that are gone are left out.
+  /// for bodies and joints that are gone are left out.
   const Command<S>* nextCommand();
   /// Applies the commands that are due, then makes a step.
   /// @throws SceneError for a command that cannot be done, with its place; for a step that cannot be made,

@@ -62,6 +62,7 @@ std::uint32_t FindPairs<S>::mergePairs(StepContext<S>& step) {
   const PlacedShape<S>* const placed = derived.placed.data();
   const ShapeTraits<S>* const traits = derived.traits.data();
   std::uint8_t* const overlapping = overlapping_.data();
+  const bool jointed = !derived.keptApart.empty();
   std::uint32_t old = 0, to = 0;
   const auto beginRun = [&] {
     pairRuns_.push_back(run);
@@ -98,6 +99,7 @@ std::uint32_t FindPairs<S>::mergePairs(StepContext<S>& step) {
       const std::uint64_t key = close[i];
       const std::uint32_t a = static_cast<std::uint32_t>(key >> 32), b = static_cast<std::uint32_t>(key);
       if (!mayCollide(traits[a], traits[b])) continue;
+      if (jointed && derived.areKeptApart(traits[a].body, traits[b].body)) continue;
       while (old < count && keyOf(pairs[old]) < key) leave();
       if (old < count && keyOf(pairs[old]) == key) {
         keep(1);
@@ -117,6 +119,7 @@ void FindPairs<S>::run(StepContext<S>& step) {
   const std::uint32_t before = static_cast<std::uint32_t>(step.state.pairs.size());
   step.refused = !findCandidates(step);
   if (step.refused) return;
+  step.derived.findKeptApart(step.state);
   step.pay(Budget::kPerCandidate * (step.derived.dynamicTree.pairs().size() + before));
   const std::uint32_t count = mergePairs(step);
   step.refused = count + step.state.restingPairs.size() > step.wiring.maxPairs;

@@ -133,6 +133,11 @@ void Islands<S>::noteOnRoused(StepContext<S>& step) {
     noteIsland(step, a);
     noteIsland(step, b);
   }
+  step.state.joints.each([&](JointId, const Joint<S>& joint) {
+    if ((roles_[joint.bodyA.index] | roles_[joint.bodyB.index]) == 0) return;
+    noteIsland(step, joint.bodyA.index);
+    noteIsland(step, joint.bodyB.index);
+  });
   if (!sleeps) return;
   // Shapes of what is roused stand where it does before anybody asks what is near them.
   step.derived.refresh(step.state);
@@ -286,6 +291,12 @@ void Islands<S>::eachEdge(const StepContext<S>& step, Visit&& visit) {
     if (pair.solved == 0) continue;
     visit(step.derived.traits[pair.a.index].body, step.derived.traits[pair.b.index].body, wasPushed(pair));
   }
+  step.state.joints.each([&](JointId, const Joint<S>& joint) {
+    const Body<S>& a = step.state.bodies.valueAt(joint.bodyA.index);
+    const Body<S>& b = step.state.bodies.valueAt(joint.bodyB.index);
+    const bool holds = (a.isDynamic() || b.isDynamic()) && !a.isSleeping() && !b.isSleeping();
+    if (holds) visit(joint.bodyA.index, joint.bodyB.index, true);
+  });
 }
 
 template <Scalar S>

@@ -417,8 +417,69 @@ void BlockSolver<S, N>::takePushes(std::uint32_t begin, std::uint32_t end) {
   }
 }
 
+/// Tells joints where their bodies are now and how fast.
 template <Scalar S, class N>
-bool BlockSolver<S, N>::run(bool strikes, bool pushes, Crew& crew, Budget& budget) {
+void BlockSolver<S, N>::showBodies(std::vector<JointBody<S>>& bodies) const {
+  for (JointBody<S>& body : bodies) {
+    const SoftBody<N>& from = bodies_[body.solver];
+    const int radius = (*starts_)[body.solver].radiusBits;
+    body.velocity = body.before = {units_.fromSpeed(from.velocity[0]), units_.fromSpeed(from.velocity[1])};
+    body.spin = body.spinBefore = units_.fromTurn(from.velocity[2], radius);
+    body.moved = {units_.fromWay(from.moved[0], 0), units_.fromWay(from.moved[1], 0)};
+    const S turned = units_.fromWay(from.moved[2], radius);
+    if (turned == body.turned) continue;
+    body.turned = turned;
+    body.turn = rotate(body.rotation, forAngle(turned));
+  }
+}
+
+/// Takes over what joints changed.
+/// @return false where a number does not fit
+template <Scalar S, class N>
+bool BlockSolver<S, N>::takeBodies(std::vector<JointBody<S>>& bodies) {
+  std::int64_t misfit = 0;
+  for (JointBody<S>& body : bodies) {
+    if ((*starts_)[body.solver].mass == S(0)) continue;
+    SoftBody<N>& to = bodies_[body.solver];
+    const int radius = (*starts_)[body.solver].radiusBits;
+    const Vector<S> change = body.velocity - body.before;
+    const S spinChange = body.spin - body.spinBefore;
+    to.velocity[0] = static_cast<Speed>(to.velocity[0] + units_.speed(change.x, misfit));
+    to.velocity[1] = static_cast<Speed>(to.velocity[1] + units_.speed(change.y, misfit));
+    to.velocity[2] = static_cast<Speed>(to.velocity[2] + units_.turn(spinChange, radius, misfit));
+    body.given += change;
+    body.spinGiven += spinChange;
+  }
+  return misfit == 0;
+}
+
+/// What joints gave in the last substep is given again, in the directions that they have now, and solved.
+template <Scalar S, class N>
+bool BlockSolver<S, N>::startJoints(JointSolver<S>& joints) {
+  showBodies(joints.bodies);
+  for (JointBody<S>& body : joints.bodies) {
+    body.velocity -= body.given;
+    body.spin -= body.spinGiven;
+  }
+  joints.build();
+  joints.warmStart();
+  joints.solve(true, false);
+  return takeBodies(joints.bodies);
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::relaxJoints(JointSolver<S>& joints) {
+  showBodies(joints.bodies);
+  joints.keep();
+  joints.build();
+  joints.solve(false, true);
+  joints.keep();
+  joints.addTotals();
+  return takeBodies(joints.bodies);
+}
+
+template <Scalar S, class N>
+bool BlockSolver<S, N>::run(bool strikes, bool pushes, JointSolver<S>& joints, Crew& crew, Budget& budget) {
   const auto count = static_cast<std::uint32_t>(bodies_.size());
   const std::uint64_t perPass = Budget::kPerPairAndPass * N::kLanes * blockCount_;
   Finding left;
@@ -441,8 +502,11 @@ bool BlockSolver<S, N>::run(bool strikes, bool pushes, Crew& crew, Budget& budge
       for (std::uint32_t i = begin; i < end; ++i) pushes_[i] = {};
     });
   }
+  const bool joined = !joints.empty();
+  if (joined) joints.restart();
   for (int i = 0; i < settings_->substeps; ++i) {
     bodyPass(passes_.drive);
+    if (joined) left.note(!startJoints(joints) || budget.spend(Budget::kPerPair * joints.size()));
     pass(i == 0 ? passes_.start : passes_.solve);
     for (int more = 0; strikes && more < kMorePasses; ++more) pass(passes_.solve);
     if (pushes) {
@@ -451,6 +515,7 @@ bool BlockSolver<S, N>::run(bool strikes, bool pushes, Crew& crew, Budget& budge
     }
     bodyPass(passes_.move);
     if (pushes) eachBody([&](std::uint32_t begin, std::uint32_t end) { takePushes(begin, end); });
+    if (joined) left.note(!relaxJoints(joints));
     pass(passes_.relax);
     if (left) return false;
   }

@@ -10,6 +10,7 @@
 #include <samestep/kernel.h>
 
 #include "base/budget.h"
+#include "solver/joints/joint_solver.h"
 #include "solver/kernels/contact_block.h"
 #include "solver/kernels/soft_units.h"
 #include "solver/restitution/restitution.h"
@@ -62,10 +63,11 @@ class BlockSolver {
   /// @param pushes   whether any pair is pushed apart: overlaps that no weight holds move bodies by
   ///                 velocities that are forgotten at the end of the step, for what springs leave of theirs
   ///                 in a velocity stays there for ever
+  /// @param joints   solved before the contacts in each pass, by the thread that calls
   /// @param budget   asked after each pass over the blocks
   /// @return false where a number left the range on the way, or the call shall end: nothing is then worth
   ///         anything
-  bool run(bool strikes, bool pushes, Crew& crew, Budget& budget);
+  bool run(bool strikes, bool pushes, JointSolver<S>& joints, Crew& crew, Budget& budget);
   /// After the last one: contacts that struck give back what they took, and so do those that passed on more
   /// than a bounce needs.
   /// @param pairs  with what they kept from the step before
@@ -91,6 +93,10 @@ class BlockSolver {
   void setFriction(Block& block, int lane, S friction);
   void markPushed(Block& block, int lane, const Pair<S>& pair, S overlap) const;
   void addPushes(std::uint32_t begin, std::uint32_t end);
+  void showBodies(std::vector<JointBody<S>>& bodies) const;
+  bool takeBodies(std::vector<JointBody<S>>& bodies);
+  bool startJoints(JointSolver<S>& joints);
+  bool relaxJoints(JointSolver<S>& joints);
   void takePushes(std::uint32_t begin, std::uint32_t end);
   void findBounces(std::uint32_t at, const std::vector<Pair<S>>& pairs, S bounceThreshold,
                    Restitution<S>& restitution) const;

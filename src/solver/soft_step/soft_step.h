@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/kernels/softness.h"
 #include "solver/restitution/restitution.h"
 #include "solver/soft_step/block_solver.h"
 
@@ -14,9 +15,6 @@ namespace samestep {
 /// leaves no speed behind.
 /// Sources: M. Macklin et al., "Small Steps in Physics Simulation" (2019); E. Catto, "Soft Constraints" (GDC
 /// 2011) and "Solver2D" (box2d.org, 2024).
-
-template <Scalar S>
-Softness<S> makeSoftness(S hertz, S dampingRatio, S substep);
 
 /// The solvers of a scalar, the first one preferred: where the numbers of a step do not fit one, the next
 /// takes the step.
@@ -93,6 +91,7 @@ struct SoftStep {
   bool bounces = false, strikes = false, pushes = false;
   SoftSolvers<S> solvers;
   Restitution<S> restitution;
+  JointSolver<S> joints;
 
   /// Forgets the last step.
   void clear();

@@ -129,7 +129,9 @@ enum {
   SAMESTEP_UNSOUND_ARITHMETIC = 151, /* The processor is in a mode in which double gives other results. */
   SAMESTEP_TOO_MANY_PAIRS = 152,     /* More shapes near each other than the world may hold as pairs. */
   SAMESTEP_INTERRUPTED = 153,        /* A call that was to end; see samestep_world_set_interrupt. */
-  SAMESTEP_LEFT_MIDWAY = 154 /* A world in which a change ended midway; see samestep_world_is_usable. */
+  SAMESTEP_LEFT_MIDWAY = 154,     /* A world in which a change ended midway; see samestep_world_is_usable. */
+  SAMESTEP_JOINT_NOT_FOUND = 155, /* A joint id that names nothing. */
+  SAMESTEP_ILLEGAL_JOINT = 156    /* A joint with a number out of its range, or with two ends on one body. */
 };
 
 /* The name of a status as in this header, without SAMESTEP_: "BODY_NOT_FOUND"; "UNKNOWN" for any other
@@ -154,6 +156,7 @@ SAMESTEP_C_API samestep_status samestep_fingerprint(int32_t scalar, uint64_t* fi
 
 typedef uint64_t samestep_body_id;
 typedef uint64_t samestep_shape_id;
+typedef uint64_t samestep_joint_id;
 
 /* The id of an index and a generation, for objects whose ids the game gives. Generations are odd, 1 for the
  * first object of an index, and rise with each further one. */
@@ -632,6 +635,116 @@ SAMESTEP_C_API samestep_status samestep_shape_set_sensor(samestep_world* world, 
 SAMESTEP_C_API samestep_status samestep_shape_set_user_data(samestep_world* world, samestep_shape_id shape,
                                                             uint64_t user_data);
 
+/* ---- Joints ---- */
+
+enum {
+  SAMESTEP_REVOLUTE = 0,  /* A point of A on a point of B, which turn about it: a hinge. */
+  SAMESTEP_PRISMATIC = 1, /* B slides along an axis of A and does not turn against it. */
+  SAMESTEP_DISTANCE = 2,  /* How far a point of B is from a point of A: a rod, a rope, a spring. */
+  SAMESTEP_WELD = 3,      /* B does not move against A: stiff, or as two springs. */
+  SAMESTEP_WHEEL = 4,     /* A point of B slides along an axis of A, and B turns: a suspension, a groove. */
+  SAMESTEP_TARGET = 5,    /* Pulls a point of B to a point of A with a greatest force: a mouse, friction. */
+  SAMESTEP_GEAR = 6,   /* How far B is turned against A, times a ratio: a gear, a rotary spring or motor. */
+  SAMESTEP_RATCHET = 7 /* B turns against A in one direction only. */
+};
+
+/* What a joint is to be; docs/joints.md says which fields count for which kind. Points and the axis are in
+ * the coordinates of the body they are on. */
+typedef struct samestep_joint_def {
+  uint32_t version;
+  int32_t kind;         /* SAMESTEP_REVOLUTE at first. */
+  samestep_joint_id id; /* 0: the world gives one; see samestep_body_def. */
+  samestep_body_id body_a;
+  samestep_body_id body_b;
+  uint64_t user_data;
+  samestep_vec2 anchor_a; /* m, each within 2^10. */
+  samestep_vec2 anchor_b;
+  samestep_vec2 axis;     /* Of A, a unit vector; (1, 0) at first. */
+  samestep_vec2 velocity; /* Of a target without a spring, m/s. */
+  double rest;            /* Where the spring rests; of a rod its length, of a ratchet its teeth. */
+  double angle;           /* B's angle against A's at which the joint's is 0, rad. */
+  double lower;           /* Limits, which count where limited is 1: m or rad, of any width. */
+  double upper;
+  double motor_speed;   /* m/s or rad/s; counts where motor is 1. */
+  double motor_max;     /* The greatest force or torque of the motor, N or N m. */
+  double hertz;         /* Of the spring, 0 to 1000. */
+  double damping;       /* Its damping ratio, 0 to 100; 1 at first. */
+  double angular_hertz; /* The same of the angle of a weld or target. */
+  double angular_damping;
+  double max_force;    /* With which it holds, N; 0: any, of a target none. */
+  double max_torque;   /* N m */
+  double break_force;  /* Above which it breaks, N; 0: never. */
+  double break_torque; /* N m */
+  double ratio;        /* Of a gear, 2^-8 to 2^8 in size; 1 at first. */
+  int32_t limited;     /* 1 or 0. */
+  int32_t motor;
+  int32_t spring;
+  int32_t collide_connected; /* Whether the bodies' shapes collide with each other; 0 at first. */
+} samestep_joint_def;
+
+/* What a joint did in the last step. */
+typedef struct samestep_joint_state {
+  samestep_vec2 force; /* On B, as a mean of the step, N; 0 after a restore until the next step. */
+  double torque;       /* N m */
+} samestep_joint_state;
+
+/* Sets all fields to their defaults. Null does nothing. */
+SAMESTEP_C_API void samestep_joint_def_init(samestep_joint_def* def);
+/* Adds a joint between two bodies. SAMESTEP_BODY_NOT_FOUND, SAMESTEP_WRONG_VERSION, SAMESTEP_UNKNOWN_VALUE,
+ * SAMESTEP_VALUE_OUT_OF_RANGE for a number that is not finite, SAMESTEP_ILLEGAL_JOINT, SAMESTEP_SPACE_LOCKED;
+ * of a given id SAMESTEP_INDEX_OUT_OF_BOUNDS, SAMESTEP_ILLEGAL_ID. */
+SAMESTEP_C_API samestep_status samestep_joint_create(samestep_world* world, const samestep_joint_def* def,
+                                                     samestep_joint_id* joint);
+/* Removes a joint; those of a body go with it. SAMESTEP_JOINT_NOT_FOUND, SAMESTEP_SPACE_LOCKED. */
+SAMESTEP_C_API samestep_status samestep_joint_destroy(samestep_world* world, samestep_joint_id joint);
+/* Whether the id names a joint of this world: 1 or 0. */
+SAMESTEP_C_API samestep_status samestep_joint_exists(const samestep_world* world, samestep_joint_id joint,
+                                                     int32_t* exists);
+/* Makes a joint what the definition says; it keeps its id, and the definition's means nothing.
+ * SAMESTEP_JOINT_NOT_FOUND, and as samestep_joint_create. */
+SAMESTEP_C_API samestep_status samestep_joint_replace(samestep_world* world, samestep_joint_id joint,
+                                                      const samestep_joint_def* def);
+/* What it is, as a definition. SAMESTEP_JOINT_NOT_FOUND. */
+SAMESTEP_C_API samestep_status samestep_joint_get(const samestep_world* world, samestep_joint_id joint,
+                                                  samestep_joint_def* def);
+/* SAMESTEP_JOINT_NOT_FOUND. */
+SAMESTEP_C_API samestep_status samestep_joint_get_state(const samestep_world* world, samestep_joint_id joint,
+                                                        samestep_joint_state* state);
+SAMESTEP_C_API samestep_status samestep_world_get_joint_count(const samestep_world* world, uint32_t* count);
+/* The joints of a body, by rising id. SAMESTEP_BODY_NOT_FOUND. */
+SAMESTEP_C_API samestep_status samestep_body_get_joints(samestep_world* world, samestep_body_id body,
+                                                        const samestep_joint_id** joints, size_t* count);
+/* The bodies that joints connect with a body, directly or through others that move, by rising id.
+ * SAMESTEP_BODY_NOT_FOUND. */
+SAMESTEP_C_API samestep_status samestep_body_get_connected(samestep_world* world, samestep_body_id body,
+                                                           const samestep_body_id** bodies, size_t* count);
+
+enum {
+  SAMESTEP_JOINT_BROKE = 0,         /* It is gone: its force or torque was more than it bears. */
+  SAMESTEP_JOINT_REACHED_LOWER = 1, /* Its lower limit holds, and did not in the step before. */
+  SAMESTEP_JOINT_REACHED_UPPER = 2
+};
+
+/* What happened to a joint in the last step. */
+typedef struct samestep_joint_event {
+  samestep_joint_id joint;
+  samestep_body_id body_a;
+  samestep_body_id body_b;
+  uint64_t user_data;
+  samestep_vec2 force; /* On B, N. */
+  double torque;       /* N m */
+  int32_t change;      /* SAMESTEP_JOINT_BROKE and so on. */
+  int32_t reserved;
+} samestep_joint_event;
+
+/* Whether further steps list what happens to joints, 1 or 0; 0 at first. SAMESTEP_SPACE_LOCKED. */
+SAMESTEP_C_API samestep_status samestep_world_list_joint_events(samestep_world* world, int32_t joints);
+/* What the last step listed of joints, by rising id. The array lives as those of samestep_world_get_events.
+ */
+SAMESTEP_C_API samestep_status samestep_world_get_joint_events(samestep_world* world,
+                                                               const samestep_joint_event** events,
+                                                               size_t* count);
+
 /* ---- Queries ---- */
 
 /* Which shapes a query asks about: those that the filter of a shape with these numbers would let touch it. */
@@ -936,7 +1049,10 @@ enum {
   SAMESTEP_SET_ANGLE = 5,            /* value.x, rad. */
   SAMESTEP_SPAWN = 6,                /* A body with its shapes, at most 256. */
   SAMESTEP_REMOVE = 7,               /* A body and its shapes. */
-  SAMESTEP_USER_INPUT = 8            /* Bytes that only the game understands. */
+  SAMESTEP_USER_INPUT = 8,           /* Bytes that only the game understands. */
+  SAMESTEP_JOIN = 9,                 /* A new joint, `joined`. */
+  SAMESTEP_ADJUST = 10,              /* The joint `joint` becomes `joined`. */
+  SAMESTEP_UNJOIN = 11               /* Takes the joint `joint` away. */
 };
 
 /* What a player or the game does to a world between two steps. Fields that its kind does not name mean
@@ -952,6 +1068,8 @@ typedef struct samestep_command {
   const uint8_t* bytes;
   uint32_t shape_count;
   uint32_t byte_count;
+  samestep_joint_id joint;
+  const samestep_joint_def* joined;
 } samestep_command;
 
 /* Sets all fields to 0 but the version. Null does nothing. */

@@ -53,7 +53,59 @@ void ImpulseStages<S>::prepare(StepContext<S>& step) {
     const std::uint32_t solverB = solverIndexOf(b);
     solver_.preStep(pair, solverA, solverB, bodies.valueAt(a), bodies.valueAt(b), slop, biasRate);
   }
+  prepareJoints(step);
   blows_.watch(step, bodies_, solver_);
+}
+
+template <Scalar S>
+void ImpulseStages<S>::prepareJoints(const StepContext<S>& step) {
+  const S perStep = reciprocal(max(step.dt, ratio<S>(1, 1 << 14)));
+  joints_.begin({&step.state.bodies, &step.state.joints}, {step.dt, perStep, 1});
+  if (joints_.empty()) return;
+  buildJoints(step);
+  for (JointBody<S>& body : joints_.bodies) body.solver = solverIndexOf(body.slot);
+}
+
+/// Makes the rows, with the impulses of the last step, scaled as the steps are long.
+template <Scalar S>
+void ImpulseStages<S>::buildJoints(const StepContext<S>& step) {
+  if (joints_.empty()) return;
+  joints_.restart(step.dtBefore == S(0) ? S(0) : stepRatio(step.dt, step.dtBefore));
+  joints_.build();
+}
+
+/// Shows the joints how fast their bodies are.
+template <Scalar S>
+void ImpulseStages<S>::showBodies() {
+  for (JointBody<S>& body : joints_.bodies) {
+    const ImpulseBody<S>& from = solver_.bodies[body.solver];
+    body.velocity = from.velocity;
+    body.spin = from.angularVelocity;
+  }
+}
+
+/// Takes over what they changed.
+template <Scalar S>
+void ImpulseStages<S>::returnBodies() {
+  for (const JointBody<S>& body : joints_.bodies) {
+    solver_.bodies[body.solver].velocity = body.velocity;
+    solver_.bodies[body.solver].angularVelocity = body.spin;
+  }
+}
+
+template <Scalar S>
+void ImpulseStages<S>::startJoints() {
+  if (joints_.empty()) return;
+  showBodies();
+  joints_.warmStart();
+  returnBodies();
+}
+
+template <Scalar S>
+void ImpulseStages<S>::iterateJoints() {
+  showBodies();
+  joints_.solve(true, false);
+  returnBodies();
 }
 
 template <Scalar S>
@@ -61,22 +113,33 @@ void ImpulseStages<S>::solve(StepContext<S>& step) {
   takeBodies(step);
   if (blows_.isWatched()) blows_.begin(step, solver_);
   warmStart(step);
+  startJoints();
   pass(step);
   if (blows_.isWatched() && blows_.strike(step, solver_)) {
     warmStart(step);
+    buildJoints(step);
+    startJoints();
     blows_.keep(solver_);
     pass(step);
-    if (blows_.takeBack(step, solver_)) pass(step);
+    if (blows_.takeBack(step, solver_)) {
+      buildJoints(step);
+      pass(step);
+    }
   }
   storeImpulses(step);
   storeVelocities(step);
+  if (joints_.empty()) return;
+  joints_.keep();
+  joints_.addTotals();
+  joints_.store(step.state.joints);
 }
 
 template <Scalar S>
 void ImpulseStages<S>::pass(StepContext<S>& step) {
   for (int i = 0; i < step.state.settings.iterations; ++i) {
+    if (!joints_.empty()) iterateJoints();
     solver_.iterate();
-    step.pay(Budget::kPerPairAndPass * solver_.rows.size());
+    step.pay(Budget::kPerPairAndPass * (solver_.rows.size() + joints_.size()));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "context/step_context.h"
+#include "solver/joints/joint_solver.h"
 #include "solver/sequential_impulse/sequential_impulse.h"
 #include "solver/sequential_impulse/stages/impulse_blows.h"
 
@@ -24,12 +25,19 @@ class ImpulseStages {
   std::uint32_t solverIndexOf(std::uint32_t body);
   void pass(StepContext<S>& step);
   void takeBodies(const StepContext<S>& step);
+  void prepareJoints(const StepContext<S>& step);
+  void buildJoints(const StepContext<S>& step);
+  void startJoints();
+  void iterateJoints();
+  void showBodies();
+  void returnBodies();
   void warmStart(const StepContext<S>& step);
   void storeImpulses(StepContext<S>& step);
   void storeVelocities(StepContext<S>& step);
 
   ImpulseSolver<S> solver_;
   ImpulseBlows<S> blows_;
+  JointSolver<S> joints_;
   // The first has a number among the solver's bodies for each body slot; the second leads back.
   std::vector<std::uint32_t> solverIndex_;
   std::vector<std::uint32_t> bodies_;

@@ -42,8 +42,11 @@ void SoftStages<S>::prepare(StepContext<S>& step) {
                     settings.contactPushSpeed,
                     settings.substeps};
   findGroups(step);
+  findJoints(step);
   takeBodies(step);
-  soft_.solvers.begin(settings.precision == ContactPrecision::fast);
+  for (JointBody<S>& body : soft_.joints.bodies) body.solver = solverIndex_[body.slot];
+  // 32 bits hold no joints.
+  soft_.solvers.begin(settings.precision == ContactPrecision::fast && soft_.joints.empty());
   takePairs(step);
 }
 
@@ -79,6 +82,15 @@ void SoftStages<S>::findGroups(const StepContext<S>& step) {
     groups_.add(a, movesA, b, movesB, pair.count == 1);
   }
   groups_.sort(groupOrder_);
+}
+
+/// Takes the joints, and marks their bodies.
+template <Scalar S>
+void SoftStages<S>::findJoints(const StepContext<S>& step) {
+  const SoftSettings<S>& settings = soft_.settings;
+  soft_.joints.begin({&step.state.bodies, &step.state.joints},
+                     {settings.substep, settings.perSubstep, settings.substeps});
+  for (const JointBody<S>& body : soft_.joints.bodies) solverIndex_[body.slot] = 0;
 }
 
 template <Scalar S>
@@ -258,21 +270,24 @@ void SoftStages<S>::solve(StepContext<S>& step) {
   const auto run = [&](auto& solver) {
     bool solved = false;
     const bool together = team.helpsWith(solvedPairs_.size(), StepContext<S>::kFewPairs);
-    team.during(together,
-                [&] { solved = solver.run(soft_.strikes, soft_.pushes, team, step.wiring.budget); });
+    team.during(together, [&] {
+      solved = solver.run(soft_.strikes, soft_.pushes, soft_.joints, team, step.wiring.budget);
+    });
     step.wiring.budget.endWhereAsked();
     if (!solved) return false;
     // Bounces are a stage by themselves, for they take memory.
     if (soft_.bounces)
       solver.bounce(step.state.pairs, step.state.settings.bounceThreshold, soft_.restitution);
     team.during(together, [&] { solver.store(step.state.pairs, team); });
+    if (!soft_.joints.empty()) soft_.joints.store(step.state.joints);
     return true;
   };
   while (!soft_.solvers.with(run)) {
     soft_.solvers.fallBack();
     takePairs(step);
   }
-  const bool fast = step.state.settings.precision == ContactPrecision::fast && !soft_.groups.empty();
+  const bool fast = step.state.settings.precision == ContactPrecision::fast &&
+                    !(soft_.groups.empty() && soft_.joints.empty());
   if (fast && !soft_.solvers.isFast()) ++step.events.accurateInstead;
 }
 

@@ -34,6 +34,7 @@ class SoftStages {
 
   void findGroups(const StepContext<S>& step);
   void takeStill(const StepContext<S>& step);
+  void findJoints(const StepContext<S>& step);
   void takeBodies(StepContext<S>& step);
   void takeBody(const StepContext<S>& step, std::uint32_t slot, SoftStart<S>& start, const S (&pull)[3]);
   SoftFrame<S> frameOf(const Body<S>& body, std::uint32_t index, int radiusBits) const;
