@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMostBodies = 12;
 constexpr std::size_t kMostShapes = 24;
+constexpr std::uint32_t kMostJoints = 16;
 constexpr int kMostOperations = 48;
 constexpr int kMostSteps = 40;
 
@@ -200,6 +201,10 @@ class World {
         return restore(op);
       case 16:
         return housekeeping(op);
+      case 17:
+        return addJoint(op);
+      case 18:
+        return changeJoint(op);
       default:
         return step(op);
     }
@@ -352,6 +357,54 @@ class World {
       });
     }
     space_.replace(id, readShapeFor(space_.shape(id).body(), op));
+  }
+
+  Joint<S> readJoint(std::uint64_t op) {
+    Joint<S> joint;
+    joint.kind = static_cast<JointKind>(byteOf(op, 2) % 9);
+    joint.bodyA = someBody(op);
+    joint.bodyB = someBody(op >> 16);
+    const std::uint64_t look = input_.word();
+    const Fixed far = byteOf(look, 0) == 255 ? Fixed(1025) : Fixed(4);
+    joint.anchorA = vector(far);
+    joint.anchorB = vector(far);
+    joint.axis = byteOf(look, 1) == 255 ? vector(Fixed(2)) : forAngle(number(Fixed(-4), Fixed(4)));
+    joint.collideConnected = byteOf(look, 2) & 1;
+    joint.limited = byteOf(look, 2) >> 1 & 1;
+    joint.motor = byteOf(look, 2) >> 2 & 1;
+    joint.spring = byteOf(look, 2) >> 3 & 1;
+    const Fixed wide = byteOf(look, 3) == 255 ? Fixed(1 << 21) : Fixed(4);
+    for (S* one : {&joint.rest, &joint.angle, &joint.lower, &joint.upper}) *one = number(-wide, wide);
+    const Fixed strong = byteOf(look, 4) == 255 ? Fixed(kMaxNumber) : Fixed(1000);
+    for (S* one :
+         {&joint.motorMax, &joint.maxForce, &joint.maxTorque, &joint.breakForce, &joint.breakTorque}) {
+      *one = byteOf(input_.word(), 0) % 2 == 0 ? S(0) : number(Fixed(0), strong);
+    }
+    joint.motorSpeed = number(Fixed(-257), Fixed(257));
+    joint.velocity = vector(Fixed(16));
+    joint.ratio = number(Fixed(-300), Fixed(300));
+    for (S* one : {&joint.hertz, &joint.angularHertz}) {
+      *one = byteOf(input_.word(), 0) % 2 == 0 ? S(0) : number(Fixed(0), Fixed(1001));
+    }
+    joint.damping = number(Fixed(0), Fixed(101));
+    joint.angularDamping = number(Fixed(0), Fixed(101));
+    return joint;
+  }
+  JointId someJoint(std::uint64_t op) const {
+    std::vector<JointId> ids;
+    space_.eachJoint([&](JointId id, const Joint<S>&) { ids.push_back(id); });
+    return ids.empty() ? JointId{} : ids[byteOf(op, 1) % ids.size()];
+  }
+  void addJoint(std::uint64_t op) {
+    if (space_.jointCount() < kMostJoints) space_.add(readJoint(op));
+  }
+  void changeJoint(std::uint64_t op) {
+    const JointId id = someJoint(op);
+    if (byteOf(op, 3) % 4 == 0) {
+      space_.remove(id);
+    } else {
+      space_.replace(id, readJoint(op));
+    }
   }
 
   void changeSettings(std::uint64_t op) {
@@ -524,6 +577,10 @@ class World {
       expect(space_.contains(entry.id) && space_.shape(entry.id).body() == entry.body,
              "a shape stays on its body");
     }
+    space_.eachJoint([&](JointId id, const Joint<S>& joint) {
+      expect(space_.contains(id) && joint.bodyA != joint.bodyB, "a joint is of two bodies");
+      expect(space_.contains(joint.bodyA) && space_.contains(joint.bodyB), "which are there");
+    });
     const char* const flaw = flawOf(space_.state());
     if (flaw != nullptr) fail(flaw);
     const auto& pairs = space_.state().pairs;
