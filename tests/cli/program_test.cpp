@@ -222,7 +222,10 @@ TEST_F(ProgramTest, VerifyHasLimitsForRecordingsFromStrangers) {
   EXPECT_THAT(verifyWith("--max-substeps 3").error, HasSubstr("more substeps than allowed"));
   EXPECT_THAT(verifyWith("--max-iterations 9").error, HasSubstr("more iterations than allowed"));
   EXPECT_THAT(verifyWith("--max-bytes 100").error, HasSubstr("a.rec: longer than 100 bytes"));
-  EXPECT_EQ(verifyWith("--max-substeps 4 --max-iterations 10 --max-handlers 0 --max-commands 0").code, 0);
+  EXPECT_EQ(
+      verifyWith("--max-substeps 4 --max-iterations 10 --max-handlers 0 --max-joints 0 --max-commands 0")
+          .code,
+      0);
   for (const char* option :
        {"--max-bodies 5", "--max-shapes 5", "--max-pairs 3", "--max-pairs -1", "--max-seconds 0"}) {
     EXPECT_EQ(verifyWith(option).code, 2) << option;

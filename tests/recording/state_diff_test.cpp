@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "support/fields.h"
+#include "support/joints.h"
 #include "support/recordings.h"
 #include "support/scalars.h"
 
@@ -64,6 +65,7 @@ TYPED_TEST(StateDiffTest, TellsOfEachSection) {
   registerNamedHandlers(space);
   fillAtRandom(space, 4);
   space.addWildcardHandler(1, 4);
+  joinNeighbours(space);
   hashesOf(space, 60);
   int place = 0;
   for (;; ++place) {

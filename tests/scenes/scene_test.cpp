@@ -77,6 +77,75 @@ TYPED_TEST(SceneTest, SettingsTimeStepAndHandlersAreTaken) {
   EXPECT_EQ(scene.space().state().handlers.size(), 3u);
 }
 
+TYPED_TEST(SceneTest, JointsAreReadWithTheirFieldsAndAdjustedByEvents) {
+  using S = TypeParam;
+  Scene<S> scene(SceneSource::fromText(
+      R"({"samestep": 1, "bodies": [
+            {"name": "plank", "mass": 1, "moment": 1, "position": [1, 0], "grid": {"columns": 3, "across": [1, 0]}},
+            {"name": "door", "mass": 2, "moment": 1, "position": [5, 5], "angle": 0.25}],
+          "joints": [
+            {"kind": "revolute", "a": "plank", "b": "plank", "links": 2, "anchorA": [0.5, 0], "anchorB": [-0.5, 0]},
+            {"kind": "distance", "a": "static", "b": "plank", "copies": 3, "rest": 2, "hertz": 3, "damping": 0.5},
+            {"name": "hinge", "kind": "revolute", "a": "static", "b": "door", "at": [4, 5], "lower": -1, "upper": 2,
+             "motorSpeed": 3, "motorMax": 4, "breakForce": 500, "collide": true, "userData": 7}],
+          "events": [
+            {"tick": 2, "do": "adjust", "joint": "hinge", "motorSpeed": -3},
+            {"tick": 3, "do": "unjoin", "joint": "hinge"},
+            {"tick": 4, "do": "adjust", "joint": "hinge", "motorSpeed": 1}]})",
+      "test.json"));
+  Space<S>& space = scene.space();
+  ASSERT_EQ(space.jointCount(), 6u);
+  const Joint<S>& link = space.joint({1, 1});
+  EXPECT_EQ(link.bodyA.index, 2u);
+  EXPECT_EQ(link.bodyB.index, 3u);
+  EXPECT_EQ(link.anchorB.x, ratio<S>(-1, 2));
+  const Joint<S>& spring = space.joint({4, 1});
+  EXPECT_EQ(spring.bodyA, space.staticBody());
+  EXPECT_EQ(spring.bodyB.index, 3u);
+  EXPECT_EQ(spring.spring, 1);
+  EXPECT_EQ(spring.rest, S(2));
+  const JointId id{5, 1};
+  const Joint<S>& hinge = space.joint(id);
+  EXPECT_EQ(hinge.anchorA, Vector<S>(S(4), S(5)));
+  EXPECT_NEAR(double(hinge.anchorB.x), -0.968912, 1e-6);
+  EXPECT_EQ(hinge.angle, ratio<S>(1, 4));
+  EXPECT_EQ(hinge.upper, S(2));
+  EXPECT_EQ(hinge.limited + hinge.motor + hinge.collideConnected, 3);
+  EXPECT_EQ(hinge.userData, 7u);
+  scene.step();
+  scene.step();
+  EXPECT_EQ(space.joint(id).motorSpeed, S(-3));
+  EXPECT_EQ(space.joint(id).motorMax, S(4));
+  scene.step();
+  EXPECT_FALSE(space.contains(id));
+  scene.step();
+  EXPECT_EQ(scene.tick(), 4u);
+}
+
+TEST(SceneJointTest, WhatIsWrongWithAJointIsToldWithItsPlace) {
+  const auto said = [](const std::string& joints) {
+    try {
+      Scene<Fixed>(
+          SceneSource::fromText(R"({"samestep": 1, "bodies": [{"name": "box", "mass": 1, "moment": 1}],
+                                             "joints": [)" +
+                                    joints + "]}",
+                                "test.json"));
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(said(R"({"kind": "glue", "a": "static", "b": "box"})"),
+              HasSubstr("no kind of joint of this name"));
+  EXPECT_THAT(said(R"({"kind": "weld", "a": "static", "b": "bix"})"), HasSubstr("no body is named \"bix\""));
+  EXPECT_THAT(said(R"({"kind": "weld", "a": "box", "b": "box"})"), HasSubstr("both ends are on body"));
+  EXPECT_THAT(said(R"({"kind": "weld", "a": "static", "b": "box", "hertz": 2000})"),
+              HasSubstr("hertz are out of"));
+  EXPECT_THAT(said(R"({"kind": "weld", "a": "static", "b": "box", "links": 1, "copies": 1})"),
+              HasSubstr("not both"));
+  EXPECT_THAT(said(R"({"kind": "weld", "a": "static", "b": "box", "hurtz": 2})"), HasSubstr("hurtz"));
+}
+
 TYPED_TEST(SceneTest, TheSoftStepHasSettingsOfItsOwn) {
   const Scene<TypeParam> scene(SceneSource::fromText(
       R"({"samestep": 1, "settings": {"solver": "soft step", "substeps": 6, "contactHertz": 20,

@@ -312,6 +312,8 @@ void addLimits(CLI::App& word, RecordingLimits& limits, std::int64_t& seconds) {
   word.add_option("--max-handlers,--limit-handlers", limits.handlers,
                   "Refuse those with more collision handlers bound")
       ->capture_default_str();
+  word.add_option("--max-joints,--limit-joints", limits.joints, "Refuse those with more joints")
+      ->capture_default_str();
   word.add_option("--max-iterations,--limit-iterations", limits.iterations,
                   "Refuse those whose steps solve contacts more often, by sequential impulses")
       ->check(CLI::Range(1, 1000))

@@ -175,7 +175,7 @@ void JointTrees<S>::takeRows(Link& link, const JointWork<S>& joint, const std::v
 
 template <Scalar S>
 void JointTrees<S>::build(const std::vector<JointWork<S>>& joints, const std::vector<JointRow<S>>& rows) {
-  const Scaled<S> one = toScaled(S(1)), give = compliance<S>();
+  const Scaled<S> one = toScaled(S(1)), softness = compliance<S>();
   for (Node& node : nodes_) {
     for (Scaled<S>& part : node.inertia) part = {};
     node.inertia[0] = node.inertia[2] = node.mass;
@@ -198,7 +198,7 @@ void JointTrees<S>::build(const std::vector<JointWork<S>>& joints, const std::ve
       }
     }
   };
-  const auto respond = [&](Link& link, const Factors* leaf) {
+  const auto invert = [&](Link& link, const Factors* leaf) {
     Scaled<S> answer[6]{};
     int place = 0;
     for (int i = 0; i < link.rows; ++i) {
@@ -208,7 +208,7 @@ void JointTrees<S>::build(const std::vector<JointWork<S>>& joints, const std::ve
         if (leaf != nullptr) {
           for (int k = 0; k < 3; ++k) answer[place] = answer[place] + link.leaf[j][k] * moved[k];
         }
-        if (i == j) answer[place] = answer[place] + give * link.perImpulse[i];
+        if (i == j) answer[place] = answer[place] + softness * link.perImpulse[i];
       }
     }
     link.inverse.factor(answer, link.rows);
@@ -217,14 +217,14 @@ void JointTrees<S>::build(const std::vector<JointWork<S>>& joints, const std::ve
     Node& node = nodes_[i];
     for (std::uint32_t k = node.firstFixed; k < node.lastFixed; ++k) {
       takeRows(fixed_[k], joints[fixed_[k].joint], rows, nullptr, &node);
-      respond(fixed_[k], nullptr);
+      invert(fixed_[k], nullptr);
       stiffen(node, fixed_[k]);
     }
     node.inverse.factor(node.inertia, 3);
     if (node.parent == kNone) continue;
     Node& parent = nodes_[node.parent];
     takeRows(node.link, joints[node.link.joint], rows, &node, &parent);
-    respond(node.link, &node.inverse);
+    invert(node.link, &node.inverse);
     stiffen(parent, node.link);
   }
 }
