@@ -73,7 +73,7 @@ struct ImpactEvent {
   friend constexpr bool operator==(const ImpactEvent&, const ImpactEvent&) = default;
 };
 
-/// What happened to a joint in a step.
+/// Change of a joint in a step.
 enum class JointChange : std::uint8_t {
   broke = 0,         ///< It is gone: its force or torque was more than it bears.
   reachedLower = 1,  ///< Its lower limit holds, and did not in the step before.
@@ -87,7 +87,7 @@ struct JointEvent {
   BodyId bodyB;
   JointChange change = JointChange::broke;
   std::uint64_t userData = 0;
-  /// What it did to B in the step: N, N m.
+  /// Force and torque on B in the step, N and N m.
   Vector<S> force{};
   S torque{};
 

@@ -9,15 +9,15 @@
 
 namespace samestep {
 
-/// What a joint holds. Which fields of a Joint count for which kind is a table in docs/joints.md.
+/// Kinds of joints. Which fields of a Joint count for which kind is a table in docs/joints.md.
 enum class JointKind : std::uint8_t {
   revolute = 0,   ///< A point of A on a point of B, which turn about it: a hinge.
   prismatic = 1,  ///< B slides along an axis of A and does not turn against it.
-  distance = 2,   ///< How far a point of B is from a point of A: a rod, a rope, a spring.
+  distance = 2,   ///< Distance of a point of B from one of A: a rod, a rope, a spring.
   weld = 3,       ///< B does not move against A: stiff, or as two springs.
   wheel = 4,      ///< A point of B slides along an axis of A, and B turns: a suspension, a pin in a groove.
   target = 5,   ///< Pulls a point of B to a point of A, with a greatest force and torque: a mouse, friction.
-  gear = 6,     ///< How far B is turned against A, times a ratio: a gear, a rotary spring, limit or motor.
+  gear = 6,     ///< Angle of B against A, by a ratio: a gear, a rotary spring, limit or motor.
   ratchet = 7,  ///< B turns against A in one direction only.
 };
 
@@ -28,10 +28,11 @@ template <Scalar S>
 struct JointImpulses {
   /// On B: of a point held in x and y of the world; of an axis along it (x) and across it (y).
   Vector<S> linear{};
-  /// Of what holds the angle.
+  /// Impulse that holds the angle.
   S angular{};
   S spring{}, motor{};
-  /// Of the limits, no less than 0: what keeps B from less than the lower, and from more than the upper.
+  /// Impulses of the limits, no less than 0, which keep B from less than the lower, and from more than the
+  /// upper.
   S lower{}, upper{};
 
   friend constexpr bool operator==(const JointImpulses&, const JointImpulses&) = default;
@@ -54,13 +55,13 @@ template <Scalar S>
 struct Joint {
   BodyId bodyA{};
   BodyId bodyB{};
-  /// Of each body, within 2^10 m of its origin along either axis.
+  /// Anchors, each within 2^10 m of the origin of its body along either axis.
   Vector<S> anchorA{};
   Vector<S> anchorB{};
-  /// Of A: along which B slides. A unit vector, to 2^-10.
+  /// Axis of A along which B slides, a unit vector to 2^-10.
   Vector<S> axis{S(1), S(0)};
-  /// Of B against A at the anchors, in A's axes, m/s: what a target without a spring aims at. Each component
-  /// within 2^10.
+  /// Velocity of B against A at the anchors that a target without a spring aims at, in A's axes, m/s; each
+  /// component within 2^10.
   Vector<S> velocity{};
   /// Where the spring rests; of a distance without spring, limits and motor what it holds; of a ratchet how
   /// far its teeth are apart, above 0. m or rad, within 2^20.
@@ -70,7 +71,7 @@ struct Joint {
   /// The limits of the coordinate where `limited`, lower <= upper: m or rad, of any width within 2^20.
   S lower{};
   S upper{};
-  /// What the motor aims at, m/s within 2^10 or rad/s within 2^8; also the spin of a target.
+  /// Speed that the motor aims at, m/s within 2^10 or rad/s within 2^8; also the spin of a target.
   S motorSpeed{};
   /// The greatest force or torque of the motor, N or N m, 0 to 2^30; 0 does nothing.
   S motorMax{};
@@ -78,7 +79,7 @@ struct Joint {
   /// at the anchors; 0 hertz of a weld are stiff, of a target mean a velocity.
   S hertz{};
   S damping{1};
-  /// The same for what holds the angle of a weld or target.
+  /// Frequency and damping ratio of the angle of a weld or target.
   S angularHertz{};
   S angularDamping{1};
   /// The greatest force and torque with which the joint holds what it holds, N and N m, 0 to 2^30; 0: any,
@@ -89,14 +90,14 @@ struct Joint {
   /// step and listed. N and N m, 0 to 2^30; 0: never.
   S breakForce{};
   S breakTorque{};
-  /// Of a gear: B's angle times this, less A's, is its coordinate. 2^-8 to 2^8 in size, of either sign.
+  /// Ratio of a gear: B's angle times this, less A's, is its coordinate. 2^-8 to 2^8 in size, of either sign.
   S ratio{1};
   std::uint64_t userData = 0;
   /// State of a ratchet, which the Space sets: how far it has come, rad.
   S latch{};
   /// State, which the Space sets.
   JointImpulses<S> kept{};
-  /// What the joint did to B in the last step, as a mean of it: N in the world, N m. A result and no state: 0
+  /// Force and torque on B as means of the last step, N in the world and N m. A result and no state: 0
   /// until the joint's first step, and after a restore or load until the next one.
   Vector<S> force{};
   S torque{};
@@ -105,9 +106,9 @@ struct Joint {
   std::uint8_t limited = 0;
   std::uint8_t motor = 0;
   std::uint8_t spring = 0;
-  /// Whether shapes of the two bodies collide with each other.
+  /// 1 where shapes of the two bodies collide with each other.
   std::uint8_t collideConnected = 0;
-  /// Which limits hold since the last step and did not before: a result.
+  /// Limits that hold since the last step and did not before: a result.
   std::uint8_t reached = kReachedNothing;
   std::uint8_t unused[2] = {};
 
@@ -149,7 +150,7 @@ struct Joint {
   }
 };
 
-/// What the last step found is forgotten.
+/// Forgets the results of the last step.
 template <Scalar S>
 void forgetResults(Joint<S>& joint) {
   joint.force = {};
@@ -157,15 +158,15 @@ void forgetResults(Joint<S>& joint) {
   joint.reached = 0;
 }
 
-/// Of points and lengths that joints name, m, and of angles, rad.
+/// Bounds of the coordinates of anchors, m, and of lengths and angles of joints, m and rad.
 template <Scalar S>
 inline constexpr S kMaxAnchor = S(1 << 10);
 template <Scalar S>
 inline constexpr S kMaxJointCoordinate = S(1 << 20);
-/// Of the ratio of a gear, and its inverse.
+/// Bound of the ratio of a gear, and of its inverse.
 inline constexpr int kMaxGearRatio = 1 << 8;
 
-/// Whether a Space could have this record, whatever its bodies are; else why not.
+/// Checks a record, whatever its bodies are.
 /// @return null, or the field that is out of range, and what is allowed
 template <Scalar S>
 const char* flawOfJoint(const Joint<S>& joint);

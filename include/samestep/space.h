@@ -177,7 +177,7 @@ class Space {
   /// @throws BodyNotFound; IllegalJoint for a number out of its range, see Joint, or one body twice;
   ///         SpaceLocked
   JointId add(const Joint<S>& joint);
-  /// The same under an id of the caller's choice, as for bodies.
+  /// Takes in a joint under an id of the caller's choice, as for bodies.
   /// @throws as add; IndexOutOfBounds, IllegalId
   JointId add(const Joint<S>& joint, JointId id);
   /// @throws JointNotFound, SpaceLocked
@@ -203,7 +203,7 @@ class Space {
     requireUsable();
     state_.joints.each([&](JointId id, const Joint<S>& joint) { visit(id, joint); });
   }
-  /// The same for those of one body. Looks at all joints.
+  /// Visits the joints of one body. Looks at all joints.
   /// @throws BodyNotFound
   template <class Visit>
   void eachJoint(BodyId of, Visit&& visit) const {
@@ -396,7 +396,8 @@ class Space {
   /// the order in which they came. It lives until the next step, or until a world is brought in, which leaves
   /// nothing listed. A step that is refused leaves it as it is.
   ContactEvents<S> contactEvents() const;
-  /// The same of joints, by rising id: those that broke, and those whose limits began to hold.
+  /// Joints that broke in the last step and joints whose limits began to hold, by rising id; listed as
+  /// contact events are.
   std::span<const JointEvent<S>> jointEvents() const;
   /// Iteration limits reached and the like.
   const CollisionStats& collisionStats() const;

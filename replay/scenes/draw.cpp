@@ -227,7 +227,7 @@ class Artist {
     stroke(at + axis * (joint.limited != 0 ? end(joint.lower) : -reach),
            at + axis * (joint.limited != 0 ? end(joint.upper) : reach));
   }
-  /// Of an angle held, or free: a circle about the centre of B, with a spoke where it is turned.
+  /// Draws the turning of B: a circle about its centre with a spoke.
   void dial(const Body<S>& b) {
     const Vector<S> center = b.worldCenter();
     out_ += "<circle" + place("cx", "cy", center) + attribute("r", unit_ * S(16)) + " fill=\"none\"/>";

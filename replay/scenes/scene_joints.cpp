@@ -25,7 +25,7 @@ JointKind kindOf(const Cursor& at) {
   at.fail("no kind of joint of this name; there are: " + known);
 }
 
-/// How many joints an entry is, and how the names of their bodies are numbered.
+/// Number of joints of an entry, and the way the names of their bodies are numbered.
 struct Repeated {
   std::uint32_t count = 1;
   bool isChain = false;
@@ -113,7 +113,7 @@ void SceneBuilder<S>::addJoint(const Cursor& at, Joint<S> joint, const std::stri
   Space<S>& space = scene_.space_;
   if (space.jointCount() >= kMaxSceneJoints) at.fail(tooMany("joints", kMaxSceneJoints));
   const Body<S>&a = std::as_const(space).body(joint.bodyA), &b = std::as_const(space).body(joint.bodyB);
-  // As they stand now is where they are to stay.
+  // Bodies stay as they stand now.
   joint.angle =
       joint.kind == JointKind::gear || joint.kind == JointKind::ratchet ? S(0) : b.angle() - a.angle();
   at.optional("at", [&](const Cursor& v) {

@@ -47,7 +47,7 @@ struct StepEvents {
   CollisionStats collisionStats{};
   std::uint64_t accurateInstead = 0;
   ContactLists<S> contacts;
-  /// By rising joint, of one joint by change.
+  /// Events of joints by rising id, those of one joint by change.
   std::vector<JointEvent<S>> joints;
   /// Bits of Body::Held that the step under way noted, by body slot.
   std::vector<std::uint8_t> held;

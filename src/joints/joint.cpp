@@ -51,7 +51,7 @@ const char* flawOfPulls(const Joint<S>& joint) {
   return breaks ? nullptr : "a force or torque that breaks it is out of range, allowed are 0 to 2^30";
 }
 
-/// Of what only some kinds have.
+/// Checks fields that only some kinds have.
 template <Scalar S>
 const char* flawOfKind(const Joint<S>& joint) {
   const S ratioSize = abs(joint.ratio);

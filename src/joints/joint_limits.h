@@ -9,7 +9,7 @@ namespace samestep {
 template <Scalar S>
 inline constexpr S kMostKept = S(1 << 20);
 
-/// Whether the motor of a joint turns B, rather than moving it along an axis.
+/// True if the motor of a joint turns B, rather than moving it along an axis.
 template <Scalar S>
 bool motorTurns(const Joint<S>& joint) {
   return joint.kind != JointKind::prismatic && joint.kind != JointKind::distance;

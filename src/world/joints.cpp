@@ -103,7 +103,7 @@ std::vector<BodyId> Joints<S>::connectedTo(const WorldState<S>& state, BodyId id
   const std::uint32_t root = rootOf(id.index);
   std::vector<std::uint8_t> isIn(up.size());
   for (std::uint32_t i = 0; i < up.size(); ++i) isIn[i] = rootOf(i) == root ? 1 : 0;
-  // Those that nothing moves are each joined to what they hold.
+  // Bodies that nothing moves are each joined to their neighbours only.
   state.joints.each([&](JointId, const Joint<S>& joint) {
     const std::uint32_t a = joint.bodyA.index, b = joint.bodyB.index;
     if (rootOf(a) == root && !conducts(b)) isIn[b] = 1;

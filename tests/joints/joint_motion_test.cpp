@@ -23,7 +23,7 @@ BodyId addBody(Space<S>& space, const Vector<S>& position, S mass, S moment) {
   return space.add(body);
 }
 
-/// How far the anchors of the worst joint are apart, m.
+/// Distance of the anchors of the worst joint, m.
 template <Scalar S>
 double worstGap(const Space<S>& space) {
   double worst = 0;
@@ -39,7 +39,7 @@ template <Scalar S>
 class JointMotionTest : public ::testing::Test {};
 TYPED_TEST_SUITE(JointMotionTest, AllScalars);
 
-// From 90 degrees on a rod of 1 m at 10 m/s^2: a period of 4 K(sin 45 degrees) / sqrt(10) s.
+// The period from 90 degrees on a rod of 1 m at 10 m/s^2 is 4 K(sin 45 degrees) / sqrt(10) s.
 TYPED_TEST(JointMotionTest, APendulumKeepsTheTimeOfItsSwingAndItsEnergy) {
   using S = TypeParam;
   for (const SolverKind solver : kSolvers) {
@@ -130,7 +130,7 @@ TYPED_TEST(JointMotionTest, ARopeWithALoadOfAThousandLinksStretchesByLessThanOne
   EXPECT_LT(greatestStretch<TypeParam>(30, TypeParam(1000), 300), 0.01);
 }
 
-// Between two nails at half of its length: sinh(1 / 2c) 2c = 2 gives the sag in parts of the distance.
+// The chain is twice as long as its nails are apart: sinh(1 / 2c) 2c = 2 gives the sag in parts of that.
 TYPED_TEST(JointMotionTest, AChainHangsAsACatenary) {
   using S = TypeParam;
   Space<S> space;

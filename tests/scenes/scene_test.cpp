@@ -81,12 +81,16 @@ TYPED_TEST(SceneTest, JointsAreReadWithTheirFieldsAndAdjustedByEvents) {
   using S = TypeParam;
   Scene<S> scene(SceneSource::fromText(
       R"({"samestep": 1, "bodies": [
-            {"name": "plank", "mass": 1, "moment": 1, "position": [1, 0], "grid": {"columns": 3, "across": [1, 0]}},
+            {"name": "plank", "mass": 1, "moment": 1, "position": [1, 0],
+             "grid": {"columns": 3, "across": [1, 0]}},
             {"name": "door", "mass": 2, "moment": 1, "position": [5, 5], "angle": 0.25}],
           "joints": [
-            {"kind": "revolute", "a": "plank", "b": "plank", "links": 2, "anchorA": [0.5, 0], "anchorB": [-0.5, 0]},
-            {"kind": "distance", "a": "static", "b": "plank", "copies": 3, "rest": 2, "hertz": 3, "damping": 0.5},
-            {"name": "hinge", "kind": "revolute", "a": "static", "b": "door", "at": [4, 5], "lower": -1, "upper": 2,
+            {"kind": "revolute", "a": "plank", "b": "plank", "links": 2,
+             "anchorA": [0.5, 0], "anchorB": [-0.5, 0]},
+            {"kind": "distance", "a": "static", "b": "plank", "copies": 3, "rest": 2, "hertz": 3,
+             "damping": 0.5},
+            {"name": "hinge", "kind": "revolute", "a": "static", "b": "door", "at": [4, 5], "lower": -1,
+             "upper": 2,
              "motorSpeed": 3, "motorMax": 4, "breakForce": 500, "collide": true, "userData": 7}],
           "events": [
             {"tick": 2, "do": "adjust", "joint": "hinge", "motorSpeed": -3},

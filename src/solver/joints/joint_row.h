@@ -9,8 +9,8 @@
 
 namespace samestep {
 
-/// What is found from speeds: no more than 2^28 m/s, for velocities are held at 2^20 m/s and 2^16 rad/s
-/// between two joints, and arms at 2^11 m.
+/// Bounds of velocities between two joints, so that relative speeds stay below 2^29 m/s: velocities are held
+/// at 2^20 m/s and 2^16 rad/s between two joints, and arms at 2^11 m.
 template <Scalar S>
 inline constexpr S kMostJointSpeed = S(1 << 20);
 template <Scalar S>
@@ -20,30 +20,30 @@ inline constexpr S kMostJointSpin = S(1 << 16);
 /// relative speed that it makes, m/s or rad/s, so that no mass appears in the loop.
 template <Scalar S>
 struct JointRow {
-  /// Of the relative speed: that of the points along n, and of the turning by the arms. A row that only turns
-  /// has no n. B's less A's.
+  /// Direction and arms: the relative speed is that of the points along n, and of turning by the arms. A row
+  /// that only turns has no n. B's less A's.
   Vector<S> n{};
   S armA{}, armB{};
-  /// What a u of 1 changes the speeds along n and the turnings by.
+  /// Changes of the speeds along n and of the spins by a u of 1.
   S speedA{}, speedB{}, spinA{}, spinB{};
-  /// What the relative speed shall be, less: 0 = speed + bias.
+  /// Negative of the relative speed that is wanted: 0 = speed + bias.
   S bias{};
   /// A spring's; 1 and 0 of what is stiff.
   S massScale{1}, impulseScale{};
-  /// Of the accumulated u.
+  /// Bounds of the accumulated u.
   S low{}, high{};
   S sum{};
-  /// From u to the kept impulse, and back.
+  /// Factors from u to the kept impulse, and back.
   S scale{}, perKept{};
-  /// Which of the kept impulses it is; see JointSlot.
+  /// Place of the row among the kept impulses; see JointSlot.
   std::uint8_t slot = 0;
-  /// Whether it corrects a place, which the relaxing pass does not.
+  /// 1 if it corrects a place, which the relaxing pass does not.
   std::uint8_t corrects = 0;
 };
 
-/// Which of JointImpulses a row keeps.
+/// Names of the impulses of JointImpulses that rows keep.
 enum JointSlot : std::uint8_t {
-  kKeptPoint,  ///< By its direction, in x and y of the world.
+  kKeptPoint,  ///< In x and y of the world, where it adds by its direction.
   kKeptAlong,
   kKeptAcross,
   kKeptAngular,

@@ -10,7 +10,7 @@
 namespace samestep {
 namespace {
 
-/// What a place is off counts for no more, m or rad.
+/// Bound of an error of a place, m or rad: a larger one counts as this.
 template <Scalar S>
 inline constexpr S kMostOff = S(1 << 10);
 /// The part of what a place is off that goes in a substep.
@@ -21,7 +21,8 @@ inline constexpr S kCorrected = ratio<S>(1, 4);
 /// @param inertia  xx, xy and yy of the inverse effective mass
 template <Scalar S>
 Vector<S> principal(S xx, S xy, S yy) {
-  // Of twice the angle; half of it by halving the angle to the x axis, or to the y axis where that is nearer.
+  // This is the direction of twice the angle, which is halved against the x axis, or the y axis where that is
+  // nearer.
   const Vector<S> twice = normalize(Vector<S>(xx - yy, xy + xy));
   if (twice == Vector<S>()) return {S(1), S(0)};
   return twice.x >= S(0) ? normalize(Vector<S>(S(1) + twice.x, twice.y))
@@ -107,11 +108,11 @@ class RowMaker {
   }
   bool turns() const { return work_.turnPerKept != S(0); }
 
-  /// From a kept impulse to u, held.
+  /// Turns a kept impulse into u, held.
   static S unitsOf(const Row& row, S kept) {
     const S limit = kMostKept<S> * row.scale;
     const S size = abs(kept);
-    // Of rows that turn the scale may be above 1.
+    // Rows that turn may have a scale above 1.
     const S most = row.scale >= S(1) ? kMostKept<S> : limit;
     const S u = size >= most ? kMostKept<S> * min(S(1), row.perKept) : size * row.perKept;
     return kept < S(0) ? -u : u;
@@ -150,7 +151,7 @@ class RowMaker {
     bound(row, work_.motorMost);
     take(row, work_.kept.motor);
   }
-  /// Of a row along the coordinate, or against it, that only pushes: `room` is left before it is to hold.
+  /// Makes a row along the coordinate, or against it, one that only pushes: `room` is left before it holds.
   void limit(Row& row, S room, S kept) const {
     row.low = S(0);
     if (room > S(0)) {
@@ -160,7 +161,7 @@ class RowMaker {
     }
     take(row, kept);
   }
-  /// What is farther cannot be reached.
+  /// True of a limit near enough to be reached in a substep.
   bool isNear(S room) const { return room < S(4) * kMaxSpeed<S> * timing_.substep; }
   static void reverse(Row& row) {
     row.n = -row.n;
@@ -218,7 +219,7 @@ class RowMaker {
   }
   void distance() {
     const S length = samestep::length(apart_);
-    // Where both points are in one place any direction is as good.
+    // Any direction is as good where both points are in one place.
     const Vector<S> n = length > ratio<S>(1, 1 << 20) ? normalize(apart_) : axis();
     const auto make = [&](JointSlot slot) -> Row& { return along(slot, n, armA_); };
     if (isBare()) {

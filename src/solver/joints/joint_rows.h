@@ -10,8 +10,8 @@
 
 namespace samestep {
 
-/// How far B of a joint is turned against A, times its ratio, less its angle; rad. Angles beyond 2^20 count
-/// as that far.
+/// Angle of B of a joint, times its ratio, against A, less the angle of the joint; rad. Angles beyond 2^20
+/// count as that far.
 template <Scalar S>
 S jointAngle(const Joint<S>& joint, S angleA, S angleB);
 

@@ -38,7 +38,7 @@ Softness<S> springOf(S hertz, S damping, const JointTiming<S>& timing) {
   return hertz == S(0) ? Softness<S>{S(0), S(1), S(0)} : makeSoftness(hertz, damping, timing.substep);
 }
 
-/// Whether a joint holds something with any force.
+/// True of a joint that holds something with any force.
 template <Scalar S>
 bool isHard(const Joint<S>& joint) {
   if (joint.maxForce != S(0) || joint.maxTorque != S(0)) return false;
@@ -58,7 +58,7 @@ bool isHard(const Joint<S>& joint) {
   }
 }
 
-/// Which of the kept impulses a row that is no point keeps.
+/// The kept impulse of a row that is no point.
 template <Scalar S>
 S& keptIn(JointImpulses<S>& kept, std::uint8_t slot) {
   switch (slot) {

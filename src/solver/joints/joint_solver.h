@@ -48,7 +48,7 @@ class JointSolver {
   std::vector<JointWork<S>> joints_;
   std::vector<JointRow<S>> rows_;
   JointTrees<S> trees_;
-  // Of each body slot, its number here.
+  // Numbers of the bodies here, by body slot.
   std::vector<std::uint32_t> index_;
 };
 

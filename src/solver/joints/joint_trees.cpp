@@ -10,8 +10,8 @@ namespace {
 /// Bodies that weigh so many times as much as the lightest of them are solved as trees.
 constexpr int kHeavy = 16;
 
-/// Of a row, the part that it gives way: so little that a pass leaves nothing to see, and enough that what
-/// nothing moves may hold a body more than once.
+/// Compliance of a row, as a part of its response: so little that a pass leaves nothing to see, and enough
+/// that what nothing moves may hold a body more than once.
 template <Scalar S>
 Scaled<S> compliance() {
   return toScaled(ratio<S>(1, 1 << 24));
@@ -62,7 +62,7 @@ void JointTrees<S>::findNeighbours(const std::vector<JointWork<S>>& joints) {
   eachEnd([&](std::uint32_t body, std::uint32_t joint) { list_[next[body]++] = joint; });
 }
 
-/// Whether the bodies joined with one weigh so much more than the lightest, and hardly any loop is among
+/// True if the bodies joined with one weigh so much more than the lightest, and hardly any loop is among
 /// them.
 template <Scalar S>
 bool JointTrees<S>::isWorthIt(const std::vector<JointWork<S>>& joints, std::uint32_t root) {
@@ -96,7 +96,7 @@ void JointTrees<S>::begin(const SlotMap<Body<S>, BodyId>& world, std::vector<Joi
   nodeOf_.assign(bodies.size(), kNone);
   isSeen_.assign(bodies.size(), 0);
   findNeighbours(joints);
-  // For the masses, by number; the nodes of trees follow.
+  // The first nodes hold the masses by number; the nodes of trees follow.
   nodes_.assign(bodies.size(), {});
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body<S>& body = world.valueAt(bodies[i].slot);
@@ -181,7 +181,7 @@ void JointTrees<S>::build(const std::vector<JointWork<S>>& joints, const std::ve
     node.inertia[0] = node.inertia[2] = node.mass;
     node.inertia[5] = node.turns ? node.moment : one;
   }
-  // What a link adds to the inertia of the body nearer to the root: its rows by the inverse of how they
+  // A link adds to the inertia of the body nearer to the root: its rows by the inverse of how they
   // answer.
   const auto stiffen = [&](Node& node, const Link& link) {
     Scaled<S> by[3][3];

@@ -41,18 +41,18 @@ class JointTrees {
     void factor(const Scaled<S> (&m)[6], int rows);
     void solve(Scaled<S> (&x)[3], int rows) const;
   };
-  /// What a joint holds, of the body on the side of the leaves and of the other one.
+  /// Rows of a joint, by the body on the side of the leaves and the other one.
   struct Link {
     std::uint32_t joint = kNone;
     bool leafIsA = false;
     int rows = 0;
     std::uint32_t row[kMostRows]{};
-    /// Of each row, by the velocities of both bodies.
+    /// Rows by the velocities of both bodies.
     Scaled<S> leaf[kMostRows][3]{}, rest[kMostRows][3]{};
-    /// From an impulse to u.
+    /// Factors from an impulse to u.
     Scaled<S> perImpulse[kMostRows]{};
     Factors inverse;
-    /// What each row lacks.
+    /// Speeds that the rows lack.
     Scaled<S> lacks[3]{};
   };
   /// A body, and what holds it to the one nearer to the root.
@@ -83,7 +83,7 @@ class JointTrees {
   // Those nearer to a root first.
   std::vector<Node> nodes_;
   std::vector<Link> fixed_;
-  // Of each body of the solver: its joints, as ranges of one list; whether a tree has it.
+  // Joints of each body of the solver, as ranges of one list; its node; marks of the search.
   std::vector<std::uint32_t> start_, list_;
   std::vector<std::uint32_t> nodeOf_;
   std::vector<std::uint8_t> isSeen_;

@@ -12,7 +12,7 @@
 
 namespace samestep {
 
-/// What joints are asked from: the bodies and joints of a world.
+/// Bodies and joints of a world.
 template <Scalar S>
 struct JointedWorld {
   const SlotMap<Body<S>, BodyId>* bodies = nullptr;
@@ -22,7 +22,7 @@ struct JointedWorld {
 /// A body that joints hold, as they see it.
 template <Scalar S>
 struct JointBody {
-  /// Of its centre of mass, m/s; rad/s.
+  /// Velocity of its centre of mass, m/s, and spin, rad/s.
   Vector<S> velocity{};
   S spin{};
   /// The velocities before a pass, and what all passes of a substep have added since it began.
@@ -33,7 +33,7 @@ struct JointBody {
   /// Where it was when the step began: the centre of mass, m, and its rotation and angle, rad.
   Vector<S> center{}, centerOfMass{}, rotation{S(1), S(0)};
   S angle{};
-  /// Since then.
+  /// Way and turn since then, m and rad.
   Vector<S> moved{};
   S turned{};
   /// Its rotation now.
@@ -43,7 +43,7 @@ struct JointBody {
   std::uint32_t solver = 0;
 };
 
-/// Of a step: a substep, or a whole step by sequential impulses.
+/// Times of a step: a substep is a whole step by sequential impulses.
 template <Scalar S>
 struct JointTiming {
   /// Seconds, and its inverse.
@@ -60,7 +60,7 @@ struct JointWork {
   /// The spin that a turning u of 1 gives each body, and from u to the kept impulse and back; 0 where nothing
   /// turns.
   S turnA{}, turnB{}, turnScale{}, turnPerKept{};
-  /// What is greatest in a substep, as kept impulses: of the motor, of what is held. 0: any.
+  /// Greatest impulses in a substep, as they are kept, of the motor and of what is held. 0: any.
   S motorMost{}, forceMost{}, torqueMost{};
   Softness<S> spring{}, angularSpring{};
   JointImpulses<S> kept{};
@@ -68,14 +68,14 @@ struct JointWork {
   Vector<S> total{};
   S totalTurn{};
   std::uint32_t begin = 0, end = 0;
-  /// Whether the last two rows hold a point with no more than forceMost.
+  /// True if the last two rows hold a point with no more than forceMost.
   bool holdsPoint = false;
-  /// Whether it holds something with any force; whether a tree has it, see JointTrees.
+  /// True if it holds something with any force; if a tree has it, see JointTrees.
   bool isHard = false, inTree = false;
-  /// From an impulse, N s or N m s, to the speed of the lighter body and to the spin of the one of less
-  /// moment.
+  /// Factors from an impulse, N s or N m s, to the speed of the lighter body and to the spin of the one of
+  /// less moment.
   Scaled<S> perForce{}, perTorque{};
-  /// Whether nothing moves A, or B.
+  /// True if nothing moves A, or B.
   bool fixedA = false, fixedB = false;
 };
 

@@ -453,7 +453,7 @@ bool BlockSolver<S, N>::takeBodies(std::vector<JointBody<S>>& bodies) {
   return misfit == 0;
 }
 
-/// What joints gave in the last substep is given again, in the directions that they have now, and solved.
+/// Gives again, in the directions of now, the impulses that joints gave in the last substep, and solves.
 template <Scalar S, class N>
 bool BlockSolver<S, N>::startJoints(JointSolver<S>& joints) {
   showBodies(joints.bodies);
