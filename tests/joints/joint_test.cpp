@@ -3,11 +3,13 @@
 #include <samestep/space.h>
 
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <samestep/snapshot.h>
+#include <samestep/workers.h>
 #include "support/joints.h"
 #include "support/scalars.h"
 #include "support/world.h"
@@ -349,6 +351,56 @@ TYPED_TEST(JointTest, AWorldWithJointsGoesOnFromEverySaveAndSnapshot) {
     }
   }
   EXPECT_GT(broken, 0u);
+}
+
+TYPED_TEST(JointTest, NoKernelOrNumberOfWorkersShows) {
+  using S = TypeParam;
+  WorkerPool pool(3);
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    const auto run = [&](KernelTarget kernel, TaskRunner* runner) {
+      Space<S> space;
+      space.forceKernel(kernel);
+      space.setWorkers(runner, Sharing::always);
+      fillWithJoints(space, seed, SolverKind::softStep);
+      return hashesOf(space, 40);
+    };
+    const auto expected = run(KernelTarget::best, nullptr);
+    EXPECT_EQ(run(KernelTarget::best, &pool), expected);
+    for (const KernelTarget kernel : availableKernels()) EXPECT_EQ(run(kernel, nullptr), expected);
+  }
+}
+
+TYPED_TEST(JointTest, SleepersWakeWhenAJointComesGoesOrChanges) {
+  using S = TypeParam;
+  for (const SolverKind solver : kSolvers) {
+    Space<S> space;
+    space.setSolver(solver);
+    space.setGravity({S(0), S(-10)});
+    Settings<S> settings = space.settings();
+    settings.sleepTimeThreshold = ratio<S>(1, 2);
+    space.setSettings(settings);
+    const BodyId upper = space.add(Body<S>(S(1), S(1))), lower = space.add(Body<S>(S(1), S(1)));
+    const Vector<S> half(S(0), ratio<S>(1, 2));
+    space.body(upper).setPosition(-half);
+    space.body(lower).setPosition(-half * S(3));
+    const JointId nail = space.add(revoluteJoint<S>(space.staticBody(), upper, {}, half));
+    const JointId link = space.add(revoluteJoint<S>(upper, lower, -half, half));
+    const auto sleep = [&] {
+      for (int i = 0; i < 256 && !std::as_const(space).body(lower).isSleeping(); ++i) space.step(kTick<S>);
+      ASSERT_TRUE(std::as_const(space).body(lower).isSleeping());
+      ASSERT_TRUE(std::as_const(space).body(upper).isSleeping());
+    };
+    sleep();
+    space.change(nail, [](Joint<S>& joint) { joint.anchorA.y = ratio<S>(1, 16); });
+    space.step(kTick<S>);
+    EXPECT_FALSE(std::as_const(space).body(lower).isSleeping());
+    EXPECT_GT(space.body(upper).velocity().y, S(0));
+    sleep();
+    space.remove(link);
+    space.step(kTick<S>);
+    EXPECT_LT(space.body(lower).velocity().y, S(0));
+    EXPECT_FALSE(std::as_const(space).body(upper).isSleeping());
+  }
 }
 
 TYPED_TEST(JointTest, UnderGivenIdsTheOrderOfJointsDoesNotShow) {
