@@ -28,9 +28,9 @@ struct FieldFlaw {
 };
 
 /// Fields and sections that worlds have since format 2.
-constexpr const char* kSince2[] = {"sleepTimeThreshold", "idleSpeedThreshold", "restTime",     "island",
-                                   "activity",           "maySleep",           "resting pair", "rotationA",
-                                   "rotationB"};
+constexpr const char* kSince2[] = {
+    "sleepTimeThreshold", "idleSpeedThreshold", "restTime",  "island",    "activity",
+    "maySleep",           "resting pair",       "rotationA", "rotationB", "joint"};
 
 /// Reads the fields and sections of one world.
 template <Scalar S>
@@ -55,6 +55,7 @@ class WorldReader {
 
   template <class T, class IdType>
   void operator()(const Section& section, SlotMap<T, IdType>& map) {
+    if (bytes_.lacks(section.object)) return;
     const std::uint64_t start = bytes_.offset();
     const auto count = countOf<std::uint32_t>(section);
     std::vector<T> values(count);

@@ -392,9 +392,9 @@ TYPED_TEST(JointTest, SleepersWakeWhenAJointComesGoesOrChanges) {
     };
     sleep();
     space.change(nail, [](Joint<S>& joint) { joint.anchorA.y = ratio<S>(1, 16); });
-    space.step(kTick<S>);
+    for (int i = 0; i < 2; ++i) space.step(kTick<S>);
     EXPECT_FALSE(std::as_const(space).body(lower).isSleeping());
-    EXPECT_GT(space.body(upper).velocity().y, S(0));
+    EXPECT_GT(double(std::as_const(space).body(upper).position().y), -0.49);
     sleep();
     space.remove(link);
     space.step(kTick<S>);
