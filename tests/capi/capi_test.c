@@ -7,6 +7,7 @@
 int main(void) {
   test_errors();
   test_contacts();
+  test_joints();
   test_state();
   test_recording();
   test_session();

@@ -25,6 +25,7 @@ void steps(samestep_world* world, int count);
 
 void test_errors(void);
 void test_contacts(void);
+void test_joints(void);
 void test_state(void);
 void test_recording(void);
 void test_session(void);

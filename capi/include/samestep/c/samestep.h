@@ -710,6 +710,7 @@ SAMESTEP_C_API samestep_status samestep_joint_get(const samestep_world* world, s
 /* SAMESTEP_JOINT_NOT_FOUND. */
 SAMESTEP_C_API samestep_status samestep_joint_get_state(const samestep_world* world, samestep_joint_id joint,
                                                         samestep_joint_state* state);
+/* Number of joints. */
 SAMESTEP_C_API samestep_status samestep_world_get_joint_count(const samestep_world* world, uint32_t* count);
 /* The joints of a body, by rising id. SAMESTEP_BODY_NOT_FOUND. */
 SAMESTEP_C_API samestep_status samestep_body_get_joints(samestep_world* world, samestep_body_id body,
