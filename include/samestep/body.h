@@ -22,7 +22,7 @@ enum class BodyType : std::uint8_t {
   staticBody = 2,     ///< Nothing; its velocity is zero.
 };
 
-/// Whether a step moves a body. MIS: none, Chipmunk's sleeping
+/// State of a body: whether a step moves it. MIS: none, Chipmunk's sleeping
 enum class Activity : std::uint8_t {
   awake = 0,
   asleep = 1,  ///< No step looks at it. Of a body that is not dynamic: nothing has moved it lately.
@@ -179,7 +179,7 @@ class Body {
   // Sleeping, see docs/sleeping.md. A setter that changes anything wakes the body, with its island as the
   // next step begins, and counts its rest anew.
 
-  /// Whether steps leave it alone, as they do with an island at rest: see Settings::sleepTimeThreshold.
+  /// True if steps leave it alone, as they do with an island at rest: see Settings::sleepTimeThreshold.
   bool isSleeping() const { return activity_ == Activity::asleep && isDynamic(); }
   Activity activity() const { return activity_; }
   /// Wakes it.
@@ -189,13 +189,13 @@ class Body {
   void sleep() {
     if (isDynamic() && activity_ != Activity::asleep) restTime_ = kMaxRestTime<S>;
   }
-  /// Whether it, and what touches it, may ever sleep.
+  /// True if it, and what touches it, may ever sleep.
   bool maySleep() const { return maySleep_ != 0; }
   void setMaySleep(bool may);
   /// For how long it has been at rest, s, counted while anything may sleep; 0 while it sleeps.
   S restTime() const { return restTime_; }
-  /// Of a sleeper the lowest slot of its island, plus 1: they wake together. Else 0, unless it was woken by
-  /// hand since the last step.
+  /// Island of a sleeper: its lowest slot, plus 1; they wake together. Else 0, unless it was woken by hand
+  /// since the last step.
   std::uint32_t island() const { return island_; }
 
   /// World from body coordinates and back.
@@ -273,7 +273,7 @@ class Body {
 
   /// Notes a change that whoever rests on the body, or it itself, may have to answer to.
   void rouse() {
-    // What its own function does to it in a step is its motion.
+    // Its own function's changes in a step are its motion.
     if (stepping_ != 0) return;
     restTime_ = S(0);
     if (activity_ == Activity::asleep) activity_ = Activity::roused;
@@ -298,7 +298,7 @@ class Body {
   Motion accelerated(const Vector<S>& gravity, S damping, S dt) const;
   /// Acceleration by gravity, force and torque, per second.
   Motion acceleration(const Vector<S>& gravity) const;
-  /// Whether what it says of its rest may be.
+  /// True if what it says of its rest may be.
   bool restsWell() const;
   /// Moves the centre of mass within the body, whose material moves on as before.
   void moveCenter(const Vector<S>& center);

@@ -11,9 +11,10 @@ namespace samestep {
 /// The distance of two shapes, and the places where they are nearest.
 template <Scalar S>
 struct ShapeDistance {
-  S distance{};      ///< Of the surfaces, m; negative by the least way that parts them where they overlap.
+  S distance{};      ///< Distance of the surfaces, m; negative by the least way that parts them where they
+                     ///< overlap.
   Vector<S> normal;  ///< Unit, from the first shape to the second.
-  Vector<S> pointA;  ///< Of the first shape's surface, nearest to the second, in the world.
+  Vector<S> pointA;  ///< Point of the first shape's surface, nearest to the second, in the world.
   Vector<S> pointB;
 };
 
@@ -33,7 +34,7 @@ template <Scalar S>
 struct RigidMotion {
   Vector<S> pivot{};  ///< The point that goes straight, in the body's coordinates, m.
   Vector<S> start{};  ///< Its place as it begins, in the world, m.
-  S angle{};          ///< Of the body as it begins, rad.
+  S angle{};          ///< Angle of the body as it begins, rad.
   Vector<S> way{};    ///< Way of the point, m.
   S turn{};           ///< Turn of the body, rad.
 
@@ -63,10 +64,10 @@ inline constexpr int kMaxImpactAdvances = 128;
 template <Scalar S>
 struct Impact {
   bool hit = false;
-  /// Whether they are as close as asked at `part`. False where the search ended before it could tell: at the
+  /// True if they are as close as asked at `part`. False where the search ended before it could tell: at the
   /// limit of its advances, or where one unit of the part is a way longer than kImpactTolerance.
   bool found = false;
-  S part{1};               ///< Of the motions, in [0, 1]: 1 without a hit.
+  S part{1};               ///< Part of the motions, in [0, 1]: 1 without a hit.
   ShapeDistance<S> there;  ///< The distance then, with a hit.
 };
 

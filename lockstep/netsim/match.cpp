@@ -15,7 +15,7 @@ namespace {
 constexpr Time kSecond = 1'000'000;
 /// Strangers' datagrams come from here.
 constexpr Address kNobody = kMaxPlayers;
-/// Where a seat's peer is once it has moved.
+/// Address of a seat's peer once it has moved.
 constexpr Address kElsewhere = kMaxPlayers + 1;
 constexpr std::uint32_t kNodes = 2 * kMaxPlayers + 1;
 
@@ -51,7 +51,7 @@ class Match {
   void addPeers();
   SessionSettings settingsOf(Seat seat, bool joins);
   void addPeer(const SessionSettings& settings, Time from);
-  /// Who has a seat now, or had it last.
+  /// Peer that has a seat now, or had it last.
   Peer* peerAt(Seat seat) const;
   void plan();
   void plant();
@@ -119,7 +119,7 @@ void Match::addPeers() {
   // Most games keep the usual one.
   if (random_.perMille(500)) common_.hashInterval = static_cast<std::uint16_t>(random_.within(1, 60));
   for (Seat seat = 0; seat < seats_; ++seat) common_.addresses[seat] = seat;
-  // Of two, nobody could say who lies.
+  // Nobody could say which of two lies.
   if (has(kLie) && options_.peers > 2) liar_ = static_cast<Seat>(random_.below(options_.peers));
   for (Seat seat = 0; seat < options_.peers; ++seat) addPeer(settingsOf(seat, false), random_.below(200'000));
 }

@@ -23,7 +23,7 @@ enum Fault : std::uint32_t {
   kHostile = 128,     ///< Strangers send bytes; old datagrams come again.
   kAsymmetric = 256,  ///< Links are slower one way.
   kJoin = 512,        ///< Newcomers take seats that were not there at the start.
-  kRejoin = 1024,     ///< Who crashed or was dropped begins anew, and comes back.
+  kRejoin = 1024,     ///< A peer that crashed or was dropped begins anew, and comes back.
   kLie = 2048,        ///< A peer sends newcomers another state than the one it has.
   kCorrupt = 4096,    ///< Datagrams are changed on the way.
   kMove = 8192,       ///< Peers come to have another address.
@@ -72,11 +72,11 @@ struct MatchReport {
   std::uint32_t dropped = 0;
   std::uint32_t left = 0;
   std::uint32_t joined = 0;    ///< Seats taken in the match, those taken again included.
-  std::uint32_t rejoined = 0;  ///< Those of them that were taken before.
+  std::uint32_t rejoined = 0;  ///< Number of them that were taken before.
   std::uint32_t refused = 0;   ///< States that newcomers did not believe.
   std::uint32_t moved = 0;     ///< Peers that came to have another address.
   std::uint64_t forged = 0;    ///< Datagrams that were dropped for their seal.
-  std::uint64_t spoilt = 0;    ///< Those that were changed on the way.
+  std::uint64_t spoilt = 0;    ///< Number of them that were changed on the way.
   std::uint64_t steps = 0;
   std::uint64_t rollbacks = 0;
   std::uint32_t deepest = 0;

@@ -50,7 +50,7 @@ void Oracle::states(const Oracle::Peers& peers, const Peer& reference) {
   for (const auto& of : peers) {
     const Peer& peer = *of;
     if (peer.misused()) violate(nameOf(peer.seat()) + " was asked to step from a state that it did not have");
-    // Whoever has left need not know who comes afterwards.
+    // A peer that has left need not know who comes afterwards.
     const SessionEvent* left = eventOf(peer, SessionEvent::Kind::left, peer.seat());
     const Tick knows = survives(peer) ? kNever : std::min(agreed, left == nullptr ? kNever : left->tick);
     const Tick to = std::min({peer.certain(), reference.certain(), knows});
@@ -209,7 +209,7 @@ MatchReport Oracle::judge(const MatchOptions& options, const Oracle::Peers& peer
   const Peer* reference = nullptr;
   for (const auto& peer : peers) {
     if (!survives(*peer)) continue;
-    // Who was there from the start knows all.
+    // A peer that was there from the start knows all.
     const bool better = reference == nullptr || peer->first() < reference->first() ||
                         (peer->first() == reference->first() && peer->certain() > reference->certain());
     if (better) reference = peer.get();

@@ -57,7 +57,7 @@ class Peer {
     plantedTick_ = tick;
   }
 
-  /// What was seen of a tick from first() on.
+  /// Record of a tick from first() on.
   const TickRecord& record(Tick tick) const { return records_[tick - first_]; }
   /// The tick of the state with which it began: a newcomer's is a later one.
   Tick first() const { return first_; }

@@ -49,7 +49,7 @@ std::uint32_t Seal::open(const Datagram& datagram, Address& from, std::span<std:
     return 0;
   }
   from = all[0];
-  // Who begins anew counts from the start again.
+  // A peer that begins anew counts from the start again.
   const bool newer = number > numbers_[from] || number < numbers_[from] / 2;
   if (newer) {
     numbers_[from] = number;

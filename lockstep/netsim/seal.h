@@ -21,7 +21,7 @@ class Seal {
     for (Address other = 0; other < nodes_.size(); ++other) nodes_[other] = other;
   }
 
-  /// Where a peer was heard last.
+  /// Node at which a peer was heard last.
   Address nodeOf(Address name) const { return nodes_[name]; }
   void close(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> into);
   /// @return the length of what was sealed, or 0 for a datagram to be dropped

@@ -20,7 +20,7 @@ class SimGame {
   virtual void load(std::uint32_t slot) = 0;
   virtual void step(const TickInputs& inputs) = 0;
   virtual std::uint64_t hash() = 0;
-  /// As Game::write and Game::read.
+  /// Do what Game::write and Game::read do.
   virtual std::uint64_t write(std::uint32_t slot, std::span<std::uint8_t> into) = 0;
   virtual bool read(std::span<const std::uint8_t> bytes) = 0;
   /// Changes one bit of the state: a planted fault.

@@ -5,7 +5,7 @@
 
 namespace samestep::lockstep {
 
-/// Whether bytes from outside were taken by an action on them. A build without exceptions ends where they are
+/// True if bytes from outside were taken by an action on them. A build without exceptions ends where they are
 /// refused.
 template <class Action>
 bool isTaken(Action&& action) {

@@ -30,7 +30,7 @@ constexpr std::uint64_t kNewsWithin = 1'500'000;
 /// A player that only asks to be let in for so long has lost the match.
 constexpr std::uint64_t kLostAfter = 500'000;
 
-// Of a seat in a tick of the log.
+// These are the marks of a seat in a tick of the log.
 constexpr std::uint8_t kPresent = 1;
 constexpr std::uint8_t kLast = 2;
 
@@ -40,13 +40,13 @@ std::uint64_t since(std::uint64_t now, std::uint64_t then) { return now - std::m
 
 // ---- Who is let in.
 
-/// Whether nobody plays in a seat, and all have agreed on that.
+/// True if nobody plays in a seat, and all have agreed on that.
 bool Session::Impl::isFree(Seat seat) const {
   return state == SessionState::running && remote(seat) && ends[seat] != kNever &&
          (change.voters() & bit(seat)) == 0;
 }
 
-/// Whether an address may ask for a free seat: it has no other one, and nobody else has asked.
+/// True if an address may ask for a free seat: it has no other one, and nobody else has asked.
 bool Session::Impl::mayTake(Seat seat, Address from) const {
   if (settings.addresses[seat] != kAnybody && settings.addresses[seat] != from) return false;
   for (Seat other = 0; other < seats; ++other) {
@@ -90,18 +90,18 @@ void Session::Impl::receiveRestart(Seat seat) {
   if (since(now, links[seat].lastHeard) > kLostAfter) links[seat].restartedAt = now;
 }
 
-/// Whether a seat was let in whose player has not heard of it yet.
+/// True if a seat was let in whose player has not heard of it yet.
 bool Session::Impl::isSilentYet(Seat seat) const {
   return admittedIn[seat] != 0 && ends[seat] == kNever && streams[seat].end() == starts[seat];
 }
 
-/// Whether a player asks to be let in anew; one that is heard otherwise has not been away.
+/// True if a player asks to be let in anew; one that is heard otherwise has not been away.
 bool Session::Impl::hasRestarted(Seat seat) const {
   const Link& link = links[seat];
   return link.restartedAt > link.lastHeard && since(now, link.restartedAt) <= kLostAfter;
 }
 
-/// Whether all that a newcomer must know is settled here: nobody comes or goes.
+/// True if all that a newcomer must know is settled here: nobody comes or goes.
 bool Session::Impl::mayAdmit(Seat seat) const {
   const Newcomer& newcomer = newcomers[seat];
   if (!isFree(seat) || !newcomer.heard || since(now, newcomer.lastHeard) > kForgetAfter || leaving)
@@ -278,7 +278,7 @@ Address Session::Impl::addressOf(Seat seat) const {
 
 // ---- As a newcomer.
 
-/// Who has said something of late.
+/// Seats that have said something of late.
 Session::Impl::SeatMask Session::Impl::heardOfLate() const {
   SeatMask found = 0;
   for (Seat seat = 0; seat < seats; ++seat) {
@@ -365,7 +365,7 @@ void Session::Impl::receiveBlock(PacketReader& reader) {
                     length == std::min(kBlock, size - block * kBlock);
   if (!fits || tick == kNever) return bad();
   if (tick != joining.tick || joining.size != size) {
-    // Whoever serves has begun anew.
+    // The peer that serves has begun anew.
     if (block != 0) return;
     forgetState();
     joining.tick = tick;
@@ -387,7 +387,7 @@ void Session::Impl::forgetState() {
   joining.vouched.fill({});
 }
 
-/// What this seat sent is not to be believed.
+/// Forgets what this seat sent: it is not to be believed.
 void Session::Impl::distrust(Seat seat) {
   tell({SessionEvent::Kind::lied, seat, 0, joining.tick});
   joining.liars |= bit(seat);
@@ -429,7 +429,7 @@ void Session::Impl::receiveLog(PacketReader& reader) {
   const std::span<const std::uint8_t> piece = reader.bytes(length);
   if (!reader.good() || length > kMaxPacket) return bad();
   if (!joining.loaded || tick != joining.tick || from != joining.logged) return;
-  // What is asked for is never far ahead of what is stepped.
+  // The tick asked for is never far ahead of what is stepped.
   if (joining.parsed > current + InputStream::kCapacity / 2) return;
   joining.log.insert(joining.log.end(), piece.begin(), piece.end());
   joining.logged += length;
@@ -477,7 +477,7 @@ bool Session::Impl::readTick(PacketReader& reader, Tick tick) {
 void Session::Impl::takeLogged(Seat seat, Tick tick, bool present, const InputEntry& entry) {
   InputStream& stream = streams[seat];
   if (state != SessionState::joining) {
-    // Who plays is known from decisions; inputs may have come from their players as well.
+    // Decisions tell who plays; inputs may have come from their players as well.
     if (!present || tick != stream.end() || tick >= inputLimit(seat)) return;
     if (!stream.append(entry)) wrong = std::min(wrong, tick);
     return takeControls(seat);
@@ -532,7 +532,7 @@ void Session::Impl::receiveAdmission(Seat seat, PacketReader& reader) {
   tell({SessionEvent::Kind::started});
 }
 
-/// Who was let in still gets what it lacks from who has served it, until it has come so far.
+/// Asks, as one who was let in, for what it still lacks from who has served it, until that has come so far.
 void Session::Impl::fetchRest() {
   if (joining.from == kNoSeat || certain > starts[settings.localSeat] + kJoinLead) return;
   if (since(now, joining.fetchedAt) < kFetchEvery) return;

@@ -115,7 +115,7 @@ void requireOutside(bool inCall) {
       !inCall, "A session is changed from within a function of its own game or transport.");
 }
 
-/// While frame or poll is under way.
+/// Mark of a call: it lives while frame or poll is under way.
 class InCall {
  public:
   explicit InCall(bool& inCall) : inCall_(inCall) {

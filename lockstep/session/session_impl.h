@@ -37,7 +37,7 @@ enum class Packet : std::uint8_t {
 };
 inline constexpr std::uint32_t kProtocol = 2;
 inline constexpr Tick kNever = 0xffffffffu;
-/// Of a seat that anybody may take.
+/// Address of a seat that anybody may take.
 inline constexpr Address kAnybody = ~Address{0};
 /// No input is made for a tick further ahead of the last certain one.
 inline constexpr Tick kMaxLead = kMaxWindow + kMaxInputDelay;
@@ -52,7 +52,7 @@ inline constexpr std::uint32_t kKeptHashes = 16;
 inline constexpr std::uint32_t kKeptEvents = 64;
 inline constexpr std::uint32_t kKeptCommands = 32;
 
-// In a hello.
+// This is a bit of a hello.
 inline constexpr std::uint8_t kHearsYou = 1;
 inline constexpr std::uint8_t kWantsToJoin = 2;
 
@@ -84,7 +84,7 @@ struct Link {
   std::int32_t lagThere = 0;
 };
 
-/// Of ticks: from start to before end.
+/// Ticks from start to before end.
 struct Stay {
   Tick start = 0;
   Tick end = 0;
@@ -131,10 +131,10 @@ struct Newcomer {
   std::uint64_t lastHeard = 0;
 };
 
-/// What this peer sends a newcomer.
+/// Progress of what this peer sends a newcomer.
 struct Serving {
   Seat seat = kNoSeat;
-  Tick tick = kNever;  ///< Of the state.
+  Tick tick = kNever;  ///< Tick of the state.
   std::vector<std::uint8_t> state;
   /// The inputs of all seats, tick by tick from that of the state on, up to `logged`.
   std::vector<std::uint8_t> log;
@@ -145,23 +145,23 @@ struct Serving {
   std::uint64_t lastAnswered = 0;
 };
 
-/// What this peer, as a newcomer, has got.
+/// Progress of what this peer, as a newcomer, has got.
 struct Joining {
   Seat from = kNoSeat;
-  Tick tick = kNever;        ///< Of the state.
-  std::uint32_t size = 0;    ///< Of the state, as announced, bytes.
+  Tick tick = kNever;        ///< Tick of the state.
+  std::uint32_t size = 0;    ///< Size of the state, as announced, bytes.
   std::uint32_t blocks = 0;  ///< That have come, in their order.
   std::vector<std::uint8_t> state;
   bool read = false;    ///< It is in the game, and is
   bool loaded = false;  ///< what most others have.
   std::uint64_t hash = 0;
   std::array<KeptHash, kMaxPlayers> vouched;
-  std::vector<std::uint8_t> log;  ///< Of which no whole tick has come yet.
+  std::vector<std::uint8_t> log;  ///< Log of which no whole tick has come yet.
   std::uint32_t logged = 0;       ///< Bytes of the log that have come.
   Tick parsed = 0;                ///< The tick after the last one of the log.
   SeatMask liars = 0;
-  std::array<std::uint32_t, kMaxPlayers> numbers{};  ///< Of the view that each tells.
-  std::uint64_t since = 0;                           ///< When something new came last.
+  std::array<std::uint32_t, kMaxPlayers> numbers{};  ///< Number of the view that each tells.
+  std::uint64_t since = 0;                           ///< Time at which something new came last.
   std::uint64_t helloAt = 0;
   std::uint64_t fetchedAt = 0;
   std::uint64_t vouchedAt = 0;
@@ -183,7 +183,7 @@ struct Session::Impl {
   void appendOwn(std::span<const std::uint8_t> held);
   void confirm();
   bool complete(Tick tick) const;
-  /// Whether a seat is present in a tick.
+  /// True if a seat is present in a tick.
   bool plays(Seat seat, Tick tick) const;
   void rollBack();
   bool mayStep() const;
@@ -323,8 +323,8 @@ struct Session::Impl {
   EndReason reason = EndReason::none;
   bool paused = false;
   bool leaving = false;
-  bool inCall = false;       ///< Of frame or poll.
-  Seat seats;                ///< How many there may be.
+  bool inCall = false;       ///< True within frame or poll.
+  Seat seats;                ///< Number of seats there may be.
   std::uint64_t endsAt = 0;  ///< When a leaver stops answering; 0: is not leaving.
 
   std::vector<lockstep::InputStream> streams;
@@ -334,7 +334,7 @@ struct Session::Impl {
   std::array<Tick, kMaxPlayers> starts{};
   std::array<Tick, kMaxPlayers> ends{};
   std::array<std::array<lockstep::Stay, 2>, kMaxPlayers> stays{};
-  Tick firstTick = 0;  ///< Of what this peer knows.
+  Tick firstTick = 0;  ///< First tick that this peer knows.
   /// The view that let each seat in; 0: it was there from the start.
   std::array<std::uint32_t, kMaxPlayers> admittedIn{};
   /// Tick of each seat after the last input that was looked at for a control.
@@ -370,7 +370,7 @@ struct Session::Impl {
   Tick hashesUpTo = 0;
   SeatMask desynced = 0;
   lockstep::Locating locating;
-  lockstep::HashLog keptHashes;  ///< Of certain states in the interval of keepInterval.
+  lockstep::HashLog keptHashes;  ///< Hashes of certain states in the interval of keepInterval.
 
   std::array<lockstep::Newcomer, kMaxPlayers> newcomers{};
   lockstep::Serving serving;

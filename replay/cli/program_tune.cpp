@@ -50,7 +50,7 @@ Chart sweep(const SceneSource& source, const Options& options) {
   return sweepScene(source, sweep);
 }
 
-/// What cannot be reached, and the nearest that can.
+/// Says what cannot be reached, and the nearest that can.
 int unreachable(const Chart& chart, const Options& options, const Tuned& tuned) {
   std::printf("No setting of %s reaches %s.\n", options.scene.c_str(), goalText(options.goal).c_str());
   if (options.goal.error > 0 && options.goal.error < chart.resolution) {

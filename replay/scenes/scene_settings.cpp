@@ -66,7 +66,7 @@ template <Scalar S>
 std::uint32_t useSettings(Space<S>& space, std::string_view text, const std::string& file) {
   const json::Node root = json::parse(text, file);
   const Cursor at(root, file);
-  // What is refused is refused before the world changes.
+  // A setting that is refused is refused before the world changes.
   Space<S> trial;
   readTuned(trial, at);
   return readTuned(space, at);

@@ -20,7 +20,7 @@ struct ChartPoint {
   double lowQuartile = 0;  ///< Quartile of the errors of several starts, m; error where there is one.
   double highQuartile = 0;
   bool onFront = false;  ///< No faster one is as accurate, to 1 %.
-  std::string failure;   ///< Why a step could not be made; empty where all were, and then error is a number.
+  std::string failure;   ///< Reason why a step could not be made; empty where all were.
 };
 
 /// All settings of a method, by rising count.

@@ -16,7 +16,7 @@ constexpr int kRight = 630;
 constexpr int kTop = 84;
 constexpr int kBottom = 464;
 constexpr int kLegend = 660;
-/// What a game gives a step, ms.
+/// Time that a game gives a step, ms.
 constexpr double kBudget = 16;
 
 struct Colour {

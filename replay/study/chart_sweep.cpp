@@ -75,7 +75,7 @@ double deepestOverlap(Space<S>& space) {
   return static_cast<double>(deepest);
 }
 
-/// How a scene is run: steps of its own length times 2^-halvings.
+/// Setting of a run: steps of the scene's own length times 2^-halvings.
 struct Setting {
   const Method* method;
   KernelTarget kernel;
@@ -138,7 +138,7 @@ void nudgeBodies(Space<S>& space, int start) {
   const auto number = static_cast<std::uint64_t>(start);
   for (const BodyId id : bodies) {
     Body<S>& body = space.body(id);
-    // Up to 2^-10 m/s along each axis.
+    // The change is up to 2^-10 m/s along each axis.
     const Vector<S> more{ratio<S>(nudge(number, id.index, 0), 1 << 20),
                          ratio<S>(nudge(number, id.index, 1), 1 << 20)};
     body.setVelocity(body.velocity() + more);
@@ -179,7 +179,7 @@ class Yardstick {
 
  private:
   enum class Kind { exact, reference, rest, overlap };
-  /// Whether errors are distances from an answer.
+  /// True if errors are distances from an answer.
   bool comparesWays() const { return kind_ == Kind::exact || kind_ == Kind::reference; }
 
   template <Scalar S>

@@ -205,12 +205,12 @@ struct Derived {
   BodyPairs bodyPairs;
   BodyPairs restingPairs;
 
-  // Who moves, in no copy either: slots of bodies that steps move, by rising slot, and of each slot whether
-  // it is a dynamic body that sleeps.
+  // These tell who moves, and are in no copy either: slots of bodies that steps move, by rising slot, and of
+  // each slot whether it is a dynamic body that sleeps.
   bool activeKnown = false;
   std::vector<std::uint32_t> active;
   std::vector<std::uint8_t> sleeps;
-  /// How many sleepers there are at most; kNone where nobody has counted.
+  /// Number of sleepers, at most; kNone where nobody has counted.
   std::uint32_t mostSleepers = kNone;
   // Bodies whose joints keep their shapes from colliding, as pairs of slots, sorted; until a joint comes,
   // goes or changes.
@@ -311,12 +311,12 @@ struct Derived {
   std::span<const std::uint32_t> pairsOf(const WorldState<S>& world, BodyId id) {
     return pairsOf(world, id, world.pairs, bodyPairs);
   }
-  /// The same of those that rest.
+  /// Pairs of a body among those that rest.
   std::span<const std::uint32_t> restingPairsOf(const WorldState<S>& world, BodyId id) {
     return pairsOf(world, id, world.restingPairs, restingPairs);
   }
 
-  /// Whether a body that may move has several shapes, if that is known.
+  /// True if it is known whether a body that may move has several shapes.
   bool compoundKnown = false;
 
  private:

@@ -19,7 +19,7 @@ struct BodyAccess {
     body.id_ = id;
     body.extent_ = worldExtent;
   }
-  /// Of what enters a Space.
+  /// Begins the stay of what enters a Space.
   static void begin(Body<S>& body) {
     body.activity_ = Activity::awake;
     body.island_ = 0;

@@ -34,7 +34,7 @@ struct Rouse {
   static void all(World& world, Derived<S>& derived) {
     world.bodies.each([&](BodyId id, const Body<S>&) { body(world, derived, id.index); });
   }
-  /// Of a body that does not move itself: those that lie on one of its shapes.
+  /// Rouses those that lie on a shape of a body that does not move itself.
   static void pairsOf(World& world, Derived<S>& derived, ShapeId shape) {
     for (const Pair<S>& pair : world.restingPairs) {
       if (pair.a.index == shape.index || pair.b.index == shape.index) ends(world, derived, pair);

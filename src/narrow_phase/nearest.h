@@ -21,7 +21,7 @@ struct Gap {
 template <Scalar S>
 ClosestPoints<S> closestOf(const PlacedShape<S>& a, const PlacedShape<S>& b, CollisionId start,
                            CollisionStats* stats) {
-  // Across the line between the middles of the boxes, twice as long.
+  // The axis lies across the line between the middles of the boxes, twice as long.
   const Vector<S> axis = perp(Vector<S>((a.box.left - b.box.left) + (a.box.right - b.box.right),
                                         (a.box.bottom - b.box.bottom) + (a.box.top - b.box.top)));
   return gjk(SupportPair<S>{SupportShape<S>(a), SupportShape<S>(b)}, start, axis, stats);

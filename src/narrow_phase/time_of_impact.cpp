@@ -51,8 +51,8 @@ class Reaching {
     ever_ = turn_ == S(0) ? after(S(0)) : dot(shape.pivot() - from, direction) + reach_;
   }
 
-  /// After another part of the motion, at most. A vertex at an arm r that turns by d comes forward by its
-  /// speed times d, plus no more than |r| d^2 / 2.
+  /// Bound after another part of the motion. A vertex at an arm r that turns by d comes forward by its speed
+  /// times d, plus no more than |r| d^2 / 2.
   S after(S part) const {
     S most = along_[0] + rising_[0] * part;
     for (int i = 1; i < count_; ++i) most = max(most, along_[i] + rising_[i] * part);

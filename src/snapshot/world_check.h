@@ -203,7 +203,7 @@ class WorldFlaw {
     }
   }
 
-  /// When all sections were visited.
+  /// Checks what needs all sections to have been visited.
   void finish() {
     if (found == nullptr) found = check_.flawOfRest();
   }

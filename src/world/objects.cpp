@@ -296,7 +296,7 @@ void Objects<S>::replace(Context& world, ShapeId id, const Shape<S>& shape, bool
   change.done();
 }
 
-/// Whether two shapes of one geometry do the same where they touch something.
+/// True if two shapes of one geometry do the same where they touch something.
 template <Scalar S>
 bool Objects<S>::collidesAlike(const Shape<S>& a, const Shape<S>& b) {
   return a.friction() == b.friction() && a.elasticity() == b.elasticity() &&

@@ -17,7 +17,7 @@ template <Scalar S, class Visit>
 struct PairsToVisit {
   std::vector<Pair<S>>& pairs;
   std::span<const std::uint32_t> places;
-  bool all;  ///< Of the list, whatever the places are.
+  bool all;  ///< Takes all of the list, whatever the places are.
   Visit visit;
 
   std::size_t count() const { return all ? pairs.size() : places.size(); }
@@ -50,7 +50,7 @@ void Space<S>::visitArbiters(const BodyId* of, void (*visit)(Arbiter<S>&, void*)
   const auto visitResting = [&](Pair<S>& pair) {
     const ArbiterState before = pair.state;
     visitPair(pair);
-    // What is ignored holds nothing.
+    // An ignored pair holds nothing.
     if (pair.state != before) Rouse<S>::ends(state_, parts_->derived, pair);
   };
   const bool all = of == nullptr;

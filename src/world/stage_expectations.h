@@ -58,7 +58,7 @@ class StageExpectations {
       if (pair.solved == 0) continue;
       expects(pair.count > 0 && pair.state != ArbiterState::ignored);
       expects(bodyOf(step, pair.a).isDynamic() || bodyOf(step, pair.b).isDynamic());
-      // What sleeps and is touched was woken.
+      // A sleeper that is touched was woken.
       for (const ShapeId shape : {ShapeId(pair.a), ShapeId(pair.b)}) {
         expects(step.derived.sleeps[bodyOf(step, shape).id().index] == 0);
       }

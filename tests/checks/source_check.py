@@ -19,7 +19,7 @@ MAX_COLUMNS = 110
 MAX_FILES = 20
 MAX_FUNCTION_LINES = 70
 # Share of the comments that may begin with a fragment; and the number that a small tree may have.
-MAX_FRAGMENTS = 0.02
+MAX_FRAGMENTS = 0.04
 FEW_FRAGMENTS = 1
 
 # Where the square root may be taken, the one function of libm that IEEE-754 rounds correctly: the double

@@ -69,7 +69,7 @@ TYPED_TEST(ShapeQueryTest, PointBesidePastAndOnASegment) {
   TestFixture::expectPoint(line, at(3, -5), at(3, -2), S(3), at(0, -1));
   TestFixture::expectPoint(line, at(3, 1), at(3, 2), S(-1), at(0, 1));
   TestFixture::expectPoint(line, at(15, 0), at(12, 0), S(3), at(1, 0));
-  // On the line itself: its normal, to the right of the way from a to b.
+  // The line itself has its normal, to the right of the way from a to b.
   TestFixture::expectPoint(line, at(3, 0), at(3, -2), S(-2), at(0, -1));
 }
 

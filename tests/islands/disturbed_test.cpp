@@ -111,7 +111,7 @@ class DisturbedTest : public ::testing::Test {
       if (i > 60 && random.oneIn(12)) {
         disturb(*space, random);
         giveMass(*space);
-        // Between the change and the step, too.
+        // The call also comes between the change and the step.
         after(*space);
       }
       space->step(kTick<S>);
@@ -177,7 +177,7 @@ TYPED_TEST(DisturbedTest, WhoSleepsWouldNotMoveIfItWereAwake) {
         space.save(saved);
         Space<S> other;
         other.restore(saved);
-        // What was changed since the last step wakes in the next.
+        // A body that was changed since the last step wakes in the next.
         other.step(kTick<S>);
         std::vector<std::pair<BodyId, Vector<S>>> sleepers;
         other.eachBody([&](const Body<S>& body) {

@@ -124,7 +124,7 @@ template <Scalar S>
 struct Loss {
   const char* name;
   void (*happens)(Towers<S>& world);
-  int falls;  ///< Which box of the tower is lower soon.
+  int falls;  ///< Number of the box of the tower that is lower soon.
 };
 
 template <Scalar S>
@@ -406,7 +406,7 @@ TYPED_TEST(SleepTest, EachSetterThatChangesSomethingWakes) {
       change(world);
       world.step(1);
       EXPECT_TRUE(world.awake(world.tower)) << name;
-      // Whatever else it did, no pair is left behind.
+      // No pair is left behind, whatever else it did.
       for (const Pair<S>& pair : world.space.state().restingPairs) {
         for (const ShapeId shape : {ShapeId(pair.a), ShapeId(pair.b)}) {
           const BodyId body = world.space.shape(world.space.state().shapes.idAt(shape.index)).body();
@@ -529,8 +529,8 @@ TYPED_TEST(SleepTest, SleepSparesTheWaitAndNothingElse) {
   }
 }
 
-// What is woken goes on from its impulses. Asleep it misses what it would have crept meanwhile: less than 1
-// mm a second, measured at rest, far from the 5 cm/s that count as rest.
+// A body that is woken goes on from its impulses. Asleep it misses what it would have crept meanwhile: less
+// than 1 mm a second, measured at rest, far from the 5 cm/s that count as rest.
 TYPED_TEST(SleepTest, AWorldThatSleptGoesOnAsOneThatDidNot) {
   using S = TypeParam;
   for (const SolverKind solver : kBothSolvers) {
@@ -588,7 +588,7 @@ TYPED_TEST(SleepTest, SleepersAreSeenAndTheirContactsToo) {
   }
 }
 
-/// What handlers and lists were told.
+/// Words that handlers and lists were told.
 template <Scalar S>
 struct Told {
   int begins = 0, ends = 0, removals = 0;

@@ -41,7 +41,7 @@ struct Newcomer {
     }
     return false;
   }
-  /// Whether it has the state of a player at the newest tick that both are certain of.
+  /// True if it has the state of a player at the newest tick that both are certain of.
   bool agreesWith(Seat seat) const {
     const Session& other = *table.sessions[seat];
     const Tick tick = std::min({session->tick(), session->confirmed(), other.tick(), other.confirmed()});
@@ -106,7 +106,7 @@ TEST(JoinTest, WhoCrashedComesBackIntoItsSeat) {
   Table table(3, common());
   table.play(100);
   table.sessions[2].reset();
-  // Whoever is gone is dropped after three seconds; it may begin anew before that.
+  // A peer that is gone is dropped after three seconds; it may begin anew before that.
   table.play(90);
   Newcomer back(table, common(), 2);
   back.play(600);

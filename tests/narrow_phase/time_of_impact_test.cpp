@@ -94,7 +94,7 @@ class TimeOfImpactTest : public ::testing::Test {
   static double cross(Place o, Place a, Place b) {
     return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
   }
-  /// Of the surfaces; of cores that overlap minus both radii, or less.
+  /// Distance of the surfaces; of cores that overlap minus both radii, or less.
   static double distanceAt(const Shape<S>& a, const Motion& motionA, const Shape<S>& b, const Motion& motionB,
                            double part) {
     const auto placesA = placesOf(a, motionA, part), placesB = placesOf(b, motionB, part);

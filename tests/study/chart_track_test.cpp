@@ -83,7 +83,7 @@ TEST(ExactAnswerTest, BlockSlidesByGravityLessFrictionOrStays) {
   EXPECT_NEAR(path(0.9), 0, 1e-12);
 }
 
-// Thrown at 3 and 4 m/s: after 2 s 6 m on, 8 - 20 up.
+// The ball is thrown at 3 and 4 m/s: after 2 s 6 m on, 8 - 20 up.
 TEST(ExactAnswerTest, WhatTouchesNothingFliesAParabola) {
   StartWorld start;
   start.gravityY = -10;
@@ -127,7 +127,7 @@ TEST(ExactAnswerTest, ABallRollsWithTwoThirdsOfWhatABlockWouldHave) {
   EXPECT_DOUBLE_EQ(at.y / -0.6, 8);
 }
 
-// Of equal masses the second goes on with the speed of the first; of a heavy first one both go on.
+// The second of equal masses goes on with the speed of the first; of a heavy first one both go on.
 TEST(ExactAnswerTest, BallsThatMeetExchangeTheirSpeeds) {
   StartWorld start;
   start.bodies = {moving(0), moving(0)};

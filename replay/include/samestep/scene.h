@@ -101,7 +101,7 @@ class Scene {
   const Space<S>& space() const { return space_; }
   /// Seconds.
   S timeStep() const { return timeStep_; }
-  /// Whether anything is to happen at a numbered step.
+  /// True if anything is to happen at a numbered step.
   bool hasEvents() const { return !events_.empty(); }
   /// Steps made so far.
   std::uint64_t tick() const { return space_.stamp(); }

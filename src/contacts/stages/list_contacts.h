@@ -15,7 +15,7 @@ struct ListContacts {
 
   /// Notes what the step begins with.
   static void begin(Context& context);
-  /// Of pairs that rested as the step began, and do so no longer: notes those that touched.
+  /// Notes those that touched of pairs that rested as the step began, and do so no longer.
   static void addBegun(Context& context, const std::vector<Pair<S>>& pairs);
   /// Makes the lists.
   static void finish(Context& context);

@@ -23,7 +23,7 @@ class UpdateContacts {
   /// After the soft step's solver: tells which of the pairs that were solved before they touched have
   /// touched, those that an impulse held and those that overlapped; separate is called for the rest.
   static void settle(StepContext<S>& step);
-  /// Whether the shapes of a pair whose boxes are near each other touch in this step, or may.
+  /// True if the shapes of a pair whose boxes are near each other touch in this step, or may.
   static bool wouldTouch(const StepContext<S>& step, const Pair<S>& pair);
 
  private:

@@ -15,7 +15,7 @@ void Integrate<S>::check(const StepContext<S>& step) {
     if (body.positionFunc() != 0 || body.velocityFunc() != 0) [[unlikely]]
       step.wiring.requireCallbacks(body);
   };
-  // Of those that nobody has changed since they fell asleep, all was well then.
+  // All was well with those that nobody has changed since they fell asleep.
   if (step.derived.cached && step.derived.activeKnown) {
     for (const std::uint32_t i : step.derived.active) checkOne(bodies.valueAt(i));
     for (const std::uint32_t i : step.derived.touched) {

@@ -14,7 +14,7 @@
 namespace samestep {
 namespace {
 
-// How a body was roused: by a change of itself, or of what lies on it wherever it is.
+// A body was roused by a change of itself, or of what lies on it wherever it is.
 constexpr std::uint8_t kMoves = 1, kIsStatic = 2;
 
 template <Scalar S>
@@ -187,7 +187,7 @@ void Islands<S>::takeAwakePairs(StepContext<S>& step) {
 template <Scalar S>
 void Islands<S>::wakeTouched(StepContext<S>& step, FindPairs<S>& findPairs) {
   if (!step.derived.anySleeps(step.state)) return;
-  // What wakes may touch others that sleep.
+  // A body that wakes may touch others that sleep.
   while (noteTouched(step, findPairs)) {
     wakeNoted(step);
     takeOut(step.state.restingPairs, moved_, [&](const Pair<S>& pair) { return !bothRest(step, pair); });
@@ -264,7 +264,7 @@ bool Islands<S>::countRest(StepContext<S>& step) {
   return some;
 }
 
-/// What is not dynamic rests while nobody moves it.
+/// Settles bodies that are not dynamic: they rest while nobody moves them.
 template <Scalar S>
 void Islands<S>::settleStill(StepContext<S>& step) {
   const auto settle = [&](std::uint32_t slot) {
@@ -331,7 +331,7 @@ void Islands<S>::findIslands(StepContext<S>& step) {
   for (const std::uint32_t slot : active) {
     const Body<S>& body = bodies.valueAt(slot);
     if (!body.isDynamic()) continue;
-    // What a callback has moved since contacts were solved is held by none of them.
+    // Contacts hold nothing that a callback has moved since they were solved.
     const bool there = step.derived.poses[slot] == PlacedPose<S>::of(body);
     const bool ready = body.restTime() >= step.state.settings.sleepTimeThreshold && body.maySleep() && there;
     const bool pulled =

@@ -26,7 +26,7 @@ class Islands {
   void fallAsleep(StepContext<S>& step);
 
  private:
-  // Of a body in an island, as bits.
+  // These are bits of a body in an island.
   static constexpr std::uint8_t kStaysAwake = 1, kPulled = 2, kHeld = 4;
 
   static bool isPulled(const StepContext<S>& step, std::uint32_t slot);
@@ -51,10 +51,10 @@ class Islands {
   std::vector<std::uint32_t> stirred_;
   std::vector<std::uint32_t> woken_;
   std::vector<std::uint32_t> slept_;
-  // By Body::island, those to wake.
+  // Islands to wake, by Body::island.
   std::vector<std::uint8_t> wanted_;
   bool anyWanted_ = false;
-  // Of each body slot: how it was roused; its island so far; what is known of it.
+  // Each body slot has an entry: how it was roused; its island so far; what is known of it.
   std::vector<std::uint8_t> roles_;
   std::vector<std::uint32_t> parents_;
   std::vector<std::uint8_t> known_;

@@ -130,7 +130,7 @@ void SoftStages<S>::takeBodies(StepContext<S>& step) {
   }
 }
 
-/// What contacts meet and nothing moves in this step.
+/// Takes what contacts meet and nothing moves in this step.
 template <Scalar S>
 void SoftStages<S>::takeStill(const StepContext<S>& step) {
   for (const std::uint32_t slot : unmoved_) {

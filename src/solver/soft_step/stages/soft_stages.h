@@ -48,7 +48,7 @@ class SoftStages {
   SoftStep<S> soft_;
   ContactGroups groups_;
   std::vector<SolvedPair> solvedPairs_;
-  // Those of them that contacts do not move, each once.
+  // Bodies of them that contacts do not move, each once.
   std::vector<std::uint32_t> unmoved_;
   // Numbers of solvedPairs_, group after group.
   std::vector<std::uint32_t> groupOrder_;
