@@ -78,7 +78,9 @@ samestep_status call(World* world, Action&& action) noexcept {
       return SAMESTEP_OK;
     }
 #endif
+#ifndef SAMESTEP_C_DOUBLE_ONLY
     action(as<Fixed>(*world));
+#endif
     return SAMESTEP_OK;
   } catch (...) {
     return caught(world);
@@ -117,11 +119,15 @@ class InCall {
   Used& used_;
 };
 
-/// Runs action(a number of the scalar's type).
+/// Runs action(a number of the scalar's type). SAMESTEP_FIXED_ONLY leaves double out, SAMESTEP_C_DOUBLE_ONLY Fixed.
 /// @throws Refusal
 template <class Action>
 void forScalar(std::int32_t scalar, Action&& action) {
+#ifdef SAMESTEP_C_DOUBLE_ONLY
+  requireOr(scalar != SAMESTEP_FIXED, SAMESTEP_SCALAR_NOT_BUILT);
+#else
   if (scalar == SAMESTEP_FIXED) return action(Fixed());
+#endif
   requireOr(scalar == SAMESTEP_DOUBLE, SAMESTEP_UNKNOWN_VALUE);
 #ifdef SAMESTEP_FIXED_ONLY
   refuse(SAMESTEP_SCALAR_NOT_BUILT);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <limits>
 
@@ -86,7 +85,7 @@ std::int64_t toRaw(S x) {
   if constexpr (ScalarTraits<S>::kKind == ScalarKind::fixed) {
     return x.raw();
   } else {
-    return std::bit_cast<std::int64_t>(x);
+    return __builtin_bit_cast(std::int64_t, x);
   }
 }
 template <Scalar S>
@@ -94,7 +93,7 @@ S fromRaw(std::int64_t raw) {
   if constexpr (ScalarTraits<S>::kKind == ScalarKind::fixed) {
     return S::fromRaw(raw);
   } else {
-    return std::bit_cast<S>(raw);
+    return __builtin_bit_cast(S, raw);
   }
 }
 

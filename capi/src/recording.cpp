@@ -2,7 +2,6 @@
 // Commands, recordings and their verification.
 #include <algorithm>
 #include <cstring>
-#include <list>
 
 #include <samestep/named_handlers.h>
 #include <samestep/recorder.h>
@@ -11,6 +10,7 @@
 #include "base/require_ieee.h"
 #include "definitions.h"
 #include "limits_of.h"
+#include "replay_wiring.h"
 
 /// A recording being made.
 struct samestep_recorder {
@@ -81,16 +81,6 @@ Command<S> toCommand(const samestep_command& from) {
   }
 }
 
-/// Has the caller's function apply an input.
-/// @throws InputRefused with what it answers
-void applyInput(samestep_world& world, samestep_input_function function, std::span<const std::uint8_t> bytes,
-                void* data) {
-  require<Fault::MissingCallback>(function != nullptr);
-  const InCallback inCallback(world);
-  const samestep_status status = function(&world, bytes.data(), bytes.size(), data);
-  if (status != SAMESTEP_OK) throw InputRefused(status);
-}
-
 template <Scalar S>
 void applyInputOf(Space<S>&, std::span<const std::uint8_t> bytes, void* data) {
   auto& world = *static_cast<WorldOf<S>*>(data);
@@ -122,25 +112,6 @@ samestep_status callRecorder(samestep_recorder* recorder, Action&& action) noexc
     action(static_cast<RecorderOf<typename World::Number>&>(*recorder));
   });
 }
-
-/// The caller's wiring for the Spaces of a replay, each with a world over it.
-template <Scalar S>
-struct ReplayWiring {
-  const samestep_wiring& of;
-  std::list<WorldOf<S>> worlds;
-
-  static void connect(Space<S>& space, void* data) {
-    auto& self = *static_cast<ReplayWiring*>(data);
-    WorldOf<S>& world = self.worlds.emplace_back(space);
-    if (self.of.connect != nullptr) self.of.connect(&world, self.of.data);
-  }
-  static void apply(Space<S>& space, std::span<const std::uint8_t> bytes, void* data) {
-    auto& self = *static_cast<ReplayWiring*>(data);
-    for (WorldOf<S>& world : self.worlds) {
-      if (&world.space == &space) return applyInput(world, self.of.apply_input, bytes, self.of.data);
-    }
-  }
-};
 
 VerifyOptions toOptions(const samestep_verify_options& from) {
   current(&from);
@@ -188,12 +159,8 @@ template <Scalar S>
 VerifyResult verifyWith(std::span<const std::uint8_t> bytes, const samestep_wiring* wiring,
                         const VerifyOptions& options) {
   if (wiring == nullptr) return verify<S>(bytes, namedHandlerWiring<S>(), options);
-  ReplayWiring<S> own{*wiring, {}};
-  Wiring<S> engine;
-  engine.connect = ReplayWiring<S>::connect;
-  engine.data = &own;
-  if (wiring->apply_input != nullptr) engine.applyInput = ReplayWiring<S>::apply;
-  return verify<S>(bytes, engine, options);
+  ReplayWiring<S> own(*wiring);
+  return verify<S>(bytes, own.engine(), options);
 }
 
 }  // namespace

@@ -62,6 +62,8 @@ uint32_t samestep_simulation_revision(void) { return samestep::kSimulationRevisi
 int32_t samestep_scalar_built(int32_t scalar) {
 #ifdef SAMESTEP_FIXED_ONLY
   return scalar == SAMESTEP_FIXED ? 1 : 0;
+#elif defined(SAMESTEP_C_DOUBLE_ONLY)
+  return scalar == SAMESTEP_DOUBLE ? 1 : 0;
 #else
   return scalar == SAMESTEP_FIXED || scalar == SAMESTEP_DOUBLE ? 1 : 0;
 #endif

@@ -102,7 +102,7 @@ class WorldCheck {
     if (!both) return "a joint is on a body that does not exist";
     return joint.bodyA == joint.bodyB ? "a joint is of one body" : nullptr;
   }
-  /// Of both lists of pairs, when they are read.
+  /// Flaw of both lists of pairs, when they are read.
   const char* flawOfRest() const;
   const char* flawOf(const HandlerBinding& binding) const {
     const bool good = binding.kind <= HandlerBinding::Kind::fallback && binding.number != 0;

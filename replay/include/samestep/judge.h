@@ -57,11 +57,10 @@ struct Wirings {
 
 template <Scalar S>
 const Wiring<S>& wiringOf(const Wirings& wirings) {
-  if constexpr (std::is_same_v<S, Fixed>) {
-    return wirings.fixed;
-  } else {
-    return wirings.float64;
-  }
+#ifndef SAMESTEP_FIXED_ONLY
+  if constexpr (std::is_same_v<S, double>) return wirings.float64;
+#endif
+  if constexpr (std::is_same_v<S, Fixed>) return wirings.fixed;
 }
 
 /// Replays a recording that may be anything and says what is to be said of it. Bytes are never an error.

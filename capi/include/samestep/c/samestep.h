@@ -1176,6 +1176,80 @@ SAMESTEP_C_API samestep_status samestep_verify(const uint8_t* bytes, size_t size
                                                const samestep_verify_options* options,
                                                samestep_verify_result* result);
 
+/* ---- Playing recordings ---- */
+
+/* A recording being played for somebody to look at, forth and back. */
+typedef struct samestep_player samestep_player;
+
+/* What is known of the world that a player shows. */
+enum {
+  SAMESTEP_PROVEN = 0,  /* It came out of the first world step by step, with the hashes of the recording. */
+  SAMESTEP_CLAIMED = 1, /* It came from a keyframe beyond what was proven. */
+  SAMESTEP_REFUTED = 2  /* The recording says otherwise than what came out, here or before. */
+};
+/* What a recording is. */
+typedef struct samestep_player_info {
+  uint32_t format;   /* Version of the format. */
+  uint32_t revision; /* Of the simulation of the build that recorded it. */
+  int32_t scalar;
+  int32_t whole;  /* 0 of one that was cut; it is played as far as it goes. */
+  uint64_t ticks; /* Steps in it. */
+  double seconds; /* Of a step. */
+} samestep_player_info;
+/* Where a player stands. */
+typedef struct samestep_player_state {
+  uint64_t tick; /* Steps made. */
+  uint64_t recorded_hash;
+  uint64_t proven_ticks; /* So many steps from the start are proven. */
+  uint64_t wrong_tick;   /* The first step found whose world is not the one recorded. */
+  int32_t wrong;         /* 1 where there is one. */
+  int32_t trust;         /* SAMESTEP_PROVEN, SAMESTEP_CLAIMED or SAMESTEP_REFUTED. */
+} samestep_player_state;
+/* A command of a recording. */
+typedef struct samestep_player_command {
+  uint64_t tick;         /* Steps made before it. */
+  samestep_body_id body; /* 0 where its kind names none. */
+  int32_t kind;
+  int32_t reserved;
+} samestep_player_command;
+
+/* Checks a recording of either scalar, of which it keeps a copy, but no step. A null `wiring` registers the
+ * named handlers that scenes use; null limits are those of samestep_limits_init. SAMESTEP_MALFORMED_BYTES,
+ * SAMESTEP_SCALAR_NOT_BUILT, SAMESTEP_MISSING_CALLBACK. */
+SAMESTEP_C_API samestep_status samestep_player_create(const uint8_t* bytes, size_t size,
+                                                      const samestep_wiring* wiring,
+                                                      const samestep_limits* limits,
+                                                      samestep_player** player);
+/* Null does nothing. */
+SAMESTEP_C_API void samestep_player_destroy(samestep_player* player);
+/* What the recording is. */
+SAMESTEP_C_API samestep_status samestep_player_get_info(const samestep_player* player,
+                                                        samestep_player_info* info);
+/* The world as it is now, to be read and never changed; it ends with the player. */
+SAMESTEP_C_API samestep_status samestep_player_get_world(samestep_player* player, samestep_world** world);
+/* Where the player stands, and what is known of its world. */
+SAMESTEP_C_API samestep_status samestep_player_get_state(const samestep_player* player,
+                                                         samestep_player_state* state);
+/* Makes the next step; *made is 0 at the end. SAMESTEP_MALFORMED_BYTES for what the world refuses. */
+SAMESTEP_C_API samestep_status samestep_player_step(samestep_player* player, int32_t* made);
+/* Goes to the world after a step, by way of the last keyframe before it where that is nearer than the world
+ * as it is. SAMESTEP_VALUE_OUT_OF_RANGE beyond the end; SAMESTEP_MALFORMED_BYTES as samestep_player_step. */
+SAMESTEP_C_API samestep_status samestep_player_seek(samestep_player* player, uint64_t tick);
+/* The recorded hashes: of the first world and after each step. The array lives as long as the player. */
+SAMESTEP_C_API samestep_status samestep_player_get_hashes(const samestep_player* player,
+                                                          const uint64_t** hashes, size_t* count);
+/* The steps after which whole worlds stand in the recording. The array lives as long as the player. */
+SAMESTEP_C_API samestep_status samestep_player_get_keyframes(const samestep_player* player,
+                                                             const uint64_t** ticks, size_t* count);
+/* All commands in their order. The array lives as long as the player. */
+SAMESTEP_C_API samestep_status samestep_player_get_commands(const samestep_player* player,
+                                                            const samestep_player_command** commands,
+                                                            size_t* count);
+/* A command in words, by its place among all of them; *size as in samestep_world_write_snapshot, the 0 at the
+ * end counted. SAMESTEP_INDEX_OUT_OF_BOUNDS. */
+SAMESTEP_C_API samestep_status samestep_player_write_command(const samestep_player* player, size_t index,
+                                                             char* text, size_t capacity, size_t* size);
+
 /* ---- Sessions ---- */
 
 /* A networked match of 2 to 16 players without a host: each peer steps its own world, and only inputs travel.
