@@ -119,7 +119,8 @@ class InCall {
   Used& used_;
 };
 
-/// Runs action(a number of the scalar's type). SAMESTEP_FIXED_ONLY leaves double out, SAMESTEP_C_DOUBLE_ONLY Fixed.
+/// Runs action(a number of the scalar's type). SAMESTEP_FIXED_ONLY leaves double out, SAMESTEP_C_DOUBLE_ONLY
+/// Fixed.
 /// @throws Refusal
 template <class Action>
 void forScalar(std::int32_t scalar, Action&& action) {

@@ -107,6 +107,66 @@ static void verify_with_options(const uint8_t* bytes, size_t size, const sameste
                __LINE__);
 }
 
+/* What a player lists of the recording that `play` makes. */
+static void check_lists(samestep_player* player, uint64_t last_hash) {
+  const uint64_t* hashes = NULL;
+  const uint64_t* keyframes = NULL;
+  const samestep_player_command* commands = NULL;
+  size_t count = 0;
+  check_status(samestep_player_get_hashes(player, &hashes, &count), SAMESTEP_OK, "hashes", __LINE__);
+  check(count == 22, "a hash for the first world and after each step", __LINE__);
+  check_equal(hashes[21], last_hash, "the last hash", __LINE__);
+  check_status(samestep_player_get_keyframes(player, &keyframes, &count), SAMESTEP_OK, "worlds", __LINE__);
+  check(count >= 1 && keyframes[0] == 0, "the first world is one of those kept", __LINE__);
+  check_status(samestep_player_get_commands(player, &commands, &count), SAMESTEP_OK, "commands", __LINE__);
+  check(count == 3, "three commands", __LINE__);
+  check(commands[0].kind == SAMESTEP_APPLY_IMPULSE && commands[0].tick == 0, "the impulse", __LINE__);
+  check_equal(commands[0].body, samestep_make_id(2, 1), "its body", __LINE__);
+  check(commands[1].kind == SAMESTEP_SPAWN && commands[1].tick == 1, "the spawned body", __LINE__);
+  check(commands[2].kind == SAMESTEP_USER_INPUT && commands[2].body == 0, "the input", __LINE__);
+  char text[400];
+  size_t size = 0;
+  check_status(samestep_player_write_command(player, 0, text, sizeof text, &size), SAMESTEP_OK, "words",
+               __LINE__);
+  check(strncmp(text, "impulse: body 2", 15) == 0 && strlen(text) + 1 == size, "the impulse in words",
+        __LINE__);
+  check_status(samestep_player_write_command(player, 3, NULL, 0, &size), SAMESTEP_INDEX_OUT_OF_BOUNDS, "none",
+               __LINE__);
+}
+
+/* Plays a recording forth and back. */
+static void check_player(const uint8_t* bytes, size_t size, const samestep_wiring* wiring,
+                         uint64_t last_hash) {
+  samestep_player* player = NULL;
+  check_status(samestep_player_create(bytes, size - 1, wiring, NULL, &player), SAMESTEP_OK, "cut", __LINE__);
+  samestep_player_info info;
+  check_status(samestep_player_get_info(player, &info), SAMESTEP_OK, "info", __LINE__);
+  check(info.whole == 0, "it is known to be cut", __LINE__);
+  samestep_player_destroy(player);
+  check_status(samestep_player_create(bytes, 3, wiring, NULL, &player), SAMESTEP_MALFORMED_BYTES, "3 bytes",
+               __LINE__);
+  check_status(samestep_player_create(bytes, size, wiring, NULL, &player), SAMESTEP_OK, "player", __LINE__);
+  check_status(samestep_player_get_info(player, &info), SAMESTEP_OK, "info", __LINE__);
+  check(info.whole == 1 && info.ticks == 21, "the whole recording", __LINE__);
+  samestep_world* world = NULL;
+  check_status(samestep_player_get_world(player, &world), SAMESTEP_OK, "world", __LINE__);
+  check_status(samestep_world_destroy(world), SAMESTEP_IN_USE, "the player's world", __LINE__);
+  int32_t made = 1;
+  while (made == 1) check_status(samestep_player_step(player, &made), SAMESTEP_OK, "step", __LINE__);
+  check_equal(hash_of(world), last_hash, "the hash at the end", __LINE__);
+  check_status(samestep_player_seek(player, 7), SAMESTEP_OK, "seek", __LINE__);
+  samestep_player_state state;
+  check_status(samestep_player_get_state(player, &state), SAMESTEP_OK, "state", __LINE__);
+  check(state.tick == 7 && state.proven_ticks == 21 && state.wrong == 0, "where it stands", __LINE__);
+  check(state.trust == SAMESTEP_PROVEN, "it is proven", __LINE__);
+  check_equal(hash_of(world), state.recorded_hash, "the hash after a step", __LINE__);
+  check_status(samestep_player_seek(player, 22), SAMESTEP_VALUE_OUT_OF_RANGE, "beyond the end", __LINE__);
+  check_lists(player, last_hash);
+  samestep_player_destroy(player);
+  samestep_player_destroy(NULL);
+  check_status(samestep_player_step(NULL, &made), SAMESTEP_NULL_ARGUMENT, "no player", __LINE__);
+}
+
 static void test_match(int32_t scalar) {
   samestep_world* world = make_world(scalar);
   int inputs = 0;
@@ -132,6 +192,7 @@ static void test_match(int32_t scalar) {
   check(result.matches == 1 && result.ticks == 21 && result.unexpected[0] == '\0', "it matches", __LINE__);
   check_equal(result.computed_hash, hash_of(world), "the last hash", __LINE__);
   verify_with_options(bytes, size, &wiring, scalar);
+  check_player(bytes, size, &wiring, hash_of(world));
   check_status(samestep_verify(bytes, size, NULL, NULL, &result), SAMESTEP_MISSING_CALLBACK, "no input",
                __LINE__);
   uint8_t* changed = malloc(size);

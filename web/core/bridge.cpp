@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What JavaScript needs beside the C interface: functions of C that call those of JavaScript, by a number that takes
-// the place of `data`, and poses as drawing wants them.
+// What JavaScript needs beside the C interface: functions of C that call those of JavaScript, by a number
+// that takes the place of `data`, and poses as drawing wants them.
 #include <samestep/c/samestep.h>
 
 #include <vector>
@@ -13,7 +13,8 @@ FROM_JAVASCRIPT("contact")
 int32_t js_contact(int32_t phase, samestep_contact* contact, samestep_world* world, void* key);
 FROM_JAVASCRIPT("position") void js_position(samestep_world*, samestep_body_id, double seconds, void* key);
 FROM_JAVASCRIPT("velocity")
-void js_velocity(samestep_world*, samestep_body_id, double x, double y, double damping, double seconds, void* key);
+void js_velocity(samestep_world*, samestep_body_id, double x, double y, double damping, double seconds,
+                 void* key);
 FROM_JAVASCRIPT("post_step") void js_post_step(samestep_world*, void* key);
 FROM_JAVASCRIPT("input") samestep_status js_input(samestep_world*, const uint8_t*, size_t, void* key);
 FROM_JAVASCRIPT("connect") void js_connect(samestep_world*, void* key);
@@ -101,7 +102,8 @@ samestep_status samestep_web_write_poses(samestep_world* world, const float** va
     return SAMESTEP_OUT_OF_MEMORY;
   }
   for (size_t i = 0; i < size; ++i) {
-    const double pose[4] = {poses[i].position.x, poses[i].position.y, poses[i].rotation.x, poses[i].rotation.y};
+    const double pose[4] = {poses[i].position.x, poses[i].position.y, poses[i].rotation.x,
+                            poses[i].rotation.y};
     for (size_t k = 0; k < 4; ++k) poseValues[4 * i + k] = static_cast<float>(pose[k]);
     poseIds[i] = numberOf(poses[i].id);
   }
