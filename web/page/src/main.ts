@@ -8,6 +8,9 @@ const byId = <T extends HTMLElement>(name: string): T => document.getElementById
 const slider = (name: string): number => Number(byId<HTMLInputElement>(name).value);
 const { module } = await init();
 
+/** What players want to know; that a slow network was silent for a while is not of it. */
+const TOLD = /^(refused|left|dropped|desync|located|over|\w*Error)/;
+
 type Frame = Extract<FromPeer, { kind: 'frame' }>;
 interface Peer {
   worker: Worker;
@@ -59,7 +62,7 @@ function hear(seat: number, message: FromPeer): void {
       noteHash(seat, message.tick, message.hash);
       break;
     case 'said':
-      if (!message.text.startsWith('started')) byId('verdict').textContent = `${'AB'[seat]}: ${message.text}`;
+      if (TOLD.test(message.text)) byId('verdict').textContent = `${'AB'[seat]}: ${message.text}`;
       break;
     case 'frame':
       if (peer.frame !== undefined && message.state.rollbacks > peer.frame.state.rollbacks) {
