@@ -11,6 +11,9 @@ export interface BodyState {
   id: BodyId;
   type: BodyType;
   rotates: boolean;
+  /** Steps leave it alone until something happens to it. */
+  sleeps: boolean;
+  maySleep: boolean;
   /** Of the origin, m. */
   position: Vec2;
   /** Cosine and sine of the angle. */
@@ -79,6 +82,8 @@ export class Body {
         id: this.id,
         type: bodyTypes[core.i32[(at + place.type) >> 2]!]!,
         rotates: core.i32[(at + place.rotates) >> 2] === 1,
+        sleeps: core.i32[(at + place.sleeps) >> 2] === 1,
+        maySleep: core.i32[(at + place.may_sleep) >> 2] === 1,
         position: vec2(place.position),
         rotation: vec2(place.rotation),
         angle: number(place.angle),
@@ -157,6 +162,22 @@ export class Body {
     const bits = BigInt(value);
     const [lowHalf, highHalf] = [Number(bits & 0xffffffffn), Number((bits >> 32n) & 0xffffffffn)];
     this.#check(this.#call.samestep_body_set_user_data(this.world.pointer, this.#low, this.#high, lowHalf, highHalf));
+  }
+  /** Whether steps leave it alone until something happens to it. */
+  get sleeps(): boolean {
+    return this.#read((at) => this.world.core.i32[(at + abi.body_state.sleeps) >> 2] === 1);
+  }
+  /** Wakes it, with its island as the next step begins. */
+  activate(): void {
+    this.#check(this.#call.samestep_body_activate(this.world.pointer, this.#low, this.#high));
+  }
+  /** Spares it the wait: it sleeps as soon as its island is at rest. */
+  sleep(): void {
+    this.#check(this.#call.samestep_body_sleep(this.world.pointer, this.#low, this.#high));
+  }
+  /** Whether it may ever sleep, and with it what touches it. */
+  setMaySleep(may: boolean): void {
+    this.#check(this.#call.samestep_body_set_may_sleep(this.world.pointer, this.#low, this.#high, Number(may)));
   }
   /** In the coordinates of the body, m. */
   setCenterOfMass({ x, y }: Vec2): void {

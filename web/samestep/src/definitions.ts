@@ -23,6 +23,10 @@ export interface Settings {
   contactMargin?: number;
   bounceThreshold?: number;
   worldExtent?: number;
+  /** Rest after which islands sleep, s; 0 at first: none does. */
+  sleepTimeThreshold?: number;
+  /** Bodies that are no faster are at rest, m/s. */
+  idleSpeedThreshold?: number;
 }
 
 export type BodyType = 'dynamic' | 'kinematic' | 'static';
@@ -102,6 +106,8 @@ const SETTING_NUMBERS = {
   contactMargin: 'contact_margin',
   bounceThreshold: 'bounce_threshold',
   worldExtent: 'world_extent',
+  sleepTimeThreshold: 'sleep_time_threshold',
+  idleSpeedThreshold: 'idle_speed_threshold',
 } as const;
 
 /** Writes what is given over settings that stand in memory. */

@@ -30,6 +30,7 @@ interface SceneBody {
   mass?: number;
   moment?: number;
   userData?: number;
+  maySleep?: boolean;
   shapes?: SceneShape[];
   grid?: { rows?: number; columns?: number; across?: Pair; up?: Pair };
   csv?: string;

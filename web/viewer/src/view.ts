@@ -167,6 +167,7 @@ export class View {
       shown.destroy();
       this.#bodies.delete(id);
     }
+    const sleeping = world.settings.sleepTimeThreshold > 0;
     now.forEach((id, i) => {
       let shown = this.#bodies.get(id);
       if (shown === undefined) {
@@ -176,6 +177,7 @@ export class View {
       }
       shown.position.set(places[4 * i]!, places[4 * i + 1]!);
       shown.rotation = Math.atan2(places[4 * i + 3]!, places[4 * i + 2]!);
+      shown.alpha = sleeping && world.body(id).sleeps ? 0.45 : 1;
     });
     this.#place(now, places);
     this.#app.render();
