@@ -114,6 +114,7 @@ struct WorldOf : samestep_world {
   std::vector<samestep_contact_state> contacts;
   std::vector<PointHit<S>> pointsFound;
   std::vector<SegmentHit<S>> segmentsFound;
+  std::vector<NearHit<S>> nearFound;
   std::vector<ShapeId> shapesFound;
   std::vector<samestep_point_hit> pointHits;
   std::vector<samestep_segment_hit> segmentHits;

@@ -64,6 +64,9 @@ class BBTree final : public SpatialIndex<S> {
   /// overlap, and some more. An object removed since may still be named.
   const std::vector<IndexKeyPair>& pairs() const { return pairs_; }
 
+  /// The areas that a search of boxes() looks into for a box, and for a segment of a half thickness.
+  static GridBox areaOf(const BB<S>& box);
+  static GridSegment areaOf(const Vector<S>& a, const Vector<S>& b, S radius);
   /// Replaces `keys` by the objects that may contain the point or touch the box or the segment of the given
   /// half thickness (metres, >= 0), by rising key.
   void collectAt(const Vector<S>& point, std::vector<IndexKey>& keys) const;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include <samestep/query_view.h>
 #include <samestep/state.h>
 
 namespace samestep {
@@ -28,6 +29,11 @@ class SavedSpace {
   std::uint64_t stamp() const;
   /// The state, unpacked; an empty one if nothing was saved.
   WorldState<S> state() const;
+  /// Questions about it, without restoring it: what was where at that time. What was moved by hand after the
+  /// last step before the world was saved is placed anew by each call of this; the view itself changes
+  /// nothing.
+  /// @throws ForeignWorld where nothing was saved
+  QueryView<S> queries();
   /// The bytes that it keeps.
   std::uint64_t bytes() const;
 

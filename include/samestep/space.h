@@ -18,6 +18,7 @@
 #include <samestep/joint.h>
 #include <samestep/kernel.h>
 #include <samestep/query.h>
+#include <samestep/query_view.h>
 #include <samestep/remark.h>
 #include <samestep/saved_world.h>
 #include <samestep/settings.h>
@@ -465,6 +466,14 @@ class Space {
   /// @throws BodyNotFound, ShapeNotFound, SpaceLocked
   /// MIS: spaceFilterArbiters
   void filterArbiters(BodyId body, ShapeId shape = {});
+
+  // Queries.
+
+  /// Questions about the world as it is now: casts, overlaps, distances. The view changes nothing and may be
+  /// asked by several threads at once, until the world is changed by whatever call. Within a step it sees the
+  /// poses as the queries below do.
+  /// @throws LeftMidway
+  QueryView<S> queries();
 
   // Queries, answered by rising shape id. A shape is considered if its filter and the query's accept each
   // other. They see the poses as they are now; within a step, as the step found (before it moved bodies) or

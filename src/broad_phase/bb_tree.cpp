@@ -280,9 +280,24 @@ void BBTree<S>::collectAt(const Vector<S>& point, std::vector<IndexKey>& keys) c
 }
 
 template <Scalar S>
+GridBox BBTree<S>::areaOf(const BB<S>& box) {
+  return gridBox(box);
+}
+
+template <Scalar S>
+GridSegment BBTree<S>::areaOf(const Vector<S>& a, const Vector<S>& b, S radius) {
+  const BB<S> span(min(a.x, b.x), min(a.y, b.y), max(a.x, b.x), max(a.y, b.y));
+  return {gridBox(inflate(span, radius)),
+          {gridFloor(a.x), gridFloor(b.x)},
+          {gridFloor(a.y), gridFloor(b.y)},
+          gridCeil(radius),
+          onGrid(a) && onGrid(b) && radius <= kGridEdge<S>};
+}
+
+template <Scalar S>
 void BBTree<S>::collectIn(const BB<S>& box, std::vector<IndexKey>& keys) const {
   keys.clear();
-  tree_.query(gridBox(box), [&keys](IndexKey key) { keys.push_back(key); });
+  tree_.query(areaOf(box), [&keys](IndexKey key) { keys.push_back(key); });
   // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }
@@ -291,13 +306,7 @@ template <Scalar S>
 void BBTree<S>::collectAlong(const Vector<S>& a, const Vector<S>& b, S radius,
                              std::vector<IndexKey>& keys) const {
   keys.clear();
-  const BB<S> span(min(a.x, b.x), min(a.y, b.y), max(a.x, b.x), max(a.y, b.y));
-  const GridSegment segment = {gridBox(inflate(span, radius)),
-                               {gridFloor(a.x), gridFloor(b.x)},
-                               {gridFloor(a.y), gridFloor(b.y)},
-                               gridCeil(radius),
-                               onGrid(a) && onGrid(b) && radius <= kGridEdge<S>};
-  tree_.query(segment, [&keys](IndexKey key) { keys.push_back(key); });
+  tree_.query(areaOf(a, b, radius), [&keys](IndexKey key) { keys.push_back(key); });
   // total order: keys are unique
   std::sort(keys.begin(), keys.end());
 }

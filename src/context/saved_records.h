@@ -23,6 +23,7 @@ class SavedRecords {
   /// Holds nothing from here on.
   void clear() { used_ = 0; }
   bool empty() const { return used_ == 0; }
+  const SlotMap<Shape<S>, ShapeId>& shapes() const { return shapes_; }
   /// Number of the Space whose ids those of the world are; see Id::space.
   std::uint32_t space() const { return shapes_.space(); }
   std::uint64_t stamp() const { return empty() ? 0 : stamp_; }

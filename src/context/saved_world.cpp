@@ -55,6 +55,23 @@ WorldState<S> SavedSpace<S>::state() const {
 }
 
 template <Scalar S>
+QueryView<S> SavedSpace<S>::queries() {
+  require<Fault::ForeignWorld>(parts_ != nullptr && !parts_->records.empty());
+  Derived<S>& derived = parts_->derived;
+  if (!derived.cached || !derived.touched.empty()) {
+    const WorldState<S> world = state();
+    // The parts computed for the next step are kept as they are; shapes of bodies that were touched then go
+    // on being placed anew after a restore.
+    const bool computed = derived.cached;
+    derived.poses.resize(world.bodies.slots());
+    derived.refresh(world);
+    if (!computed) derived.stands.assign(world.bodies.slots(), 0);
+  }
+  return QueryView<S>(parts_->records.shapes(), derived.dynamicTree, derived.staticTree,
+                      derived.placed.data());
+}
+
+template <Scalar S>
 std::uint64_t SavedSpace<S>::bytes() const {
   return parts_ == nullptr ? 0 : parts_->records.bytes() + parts_->derived.bytes();
 }

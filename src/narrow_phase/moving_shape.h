@@ -11,6 +11,8 @@ class MovingShape {
  public:
   /// @param prepared  of which only what does not depend on the pose counts
   MovingShape(const PlacedShape<S>& prepared, const RigidMotion<S>& motion);
+  /// A shape that stays where it is placed.
+  explicit MovingShape(const PlacedShape<S>& placed);
   MovingShape(const MovingShape&) = delete;
   MovingShape& operator=(const MovingShape&) = delete;
 
@@ -28,9 +30,13 @@ class MovingShape {
   RigidMotion<S> motion_;
   Vector<S> pivot_;
   S reach_{};
+  bool stays_ = false;
   Plane<S> planes_[kMaxPolyVertices];
 };
 
+/// @throws ValueOutOfRange for a motion that timeOfImpact refuses
+template <Scalar S>
+void requireMotion(const RigidMotion<S>& motion);
 /// The time of impact as for shapes.
 template <Scalar S>
 Impact<S> timeOfImpact(MovingShape<S>& a, MovingShape<S>& b, S distance);

@@ -20,22 +20,6 @@ constexpr int kMaxLengthenings = 4;
 template <Scalar S>
 inline constexpr S kPartUnit = S(0x1p-32);
 
-template <Scalar S>
-void requireMotion(const RigidMotion<S>& motion) {
-  const S far = S(2) * kMaxWorldExtent<S>;
-  require<Fault::ValueOutOfRange>(within(motion.pivot, S(kMaxExtent)), "timeOfImpact: the pivot is ",
-                                  motion.pivot, " m, allowed are up to ", kMaxExtent, " m along each axis");
-  require<Fault::ValueOutOfRange>(within(motion.start, kMaxWorldExtent<S>), "timeOfImpact: the start is ",
-                                  motion.start, " m, allowed are up to ", kMaxWorldExtent<S>,
-                                  " m along each axis");
-  require<Fault::ValueOutOfRange>(within(motion.angle, kMaxAngle<S>), "timeOfImpact: the angle is ",
-                                  motion.angle, " rad, allowed are up to ", kMaxAngle<S>, " rad");
-  require<Fault::ValueOutOfRange>(within(motion.way, far), "timeOfImpact: the way is ", motion.way,
-                                  " m, allowed are up to ", far, " m along each axis");
-  require<Fault::ValueOutOfRange>(within(motion.turn, kMaxTurn<S>), "timeOfImpact: the turn is ", motion.turn,
-                                  " rad, allowed are up to ", kMaxTurn<S>, " rad");
-}
-
 /// The reach of a shape along a direction, seen from a point, while it goes on turning. Its way is no part of
 /// it.
 template <Scalar S>
@@ -122,6 +106,22 @@ PlacedShape<S> prepared(const Shape<S>& shape, Plane<S>* local) {
 }  // namespace
 
 template <Scalar S>
+void requireMotion(const RigidMotion<S>& motion) {
+  const S far = S(2) * kMaxWorldExtent<S>;
+  require<Fault::ValueOutOfRange>(within(motion.pivot, S(kMaxExtent)), "a motion: the pivot is ",
+                                  motion.pivot, " m, allowed are up to ", kMaxExtent, " m along each axis");
+  require<Fault::ValueOutOfRange>(within(motion.start, kMaxWorldExtent<S>), "a motion: the start is ",
+                                  motion.start, " m, allowed are up to ", kMaxWorldExtent<S>,
+                                  " m along each axis");
+  require<Fault::ValueOutOfRange>(within(motion.angle, kMaxAngle<S>), "a motion: the angle is ", motion.angle,
+                                  " rad, allowed are up to ", kMaxAngle<S>, " rad");
+  require<Fault::ValueOutOfRange>(within(motion.way, far), "a motion: the way is ", motion.way,
+                                  " m, allowed are up to ", far, " m along each axis");
+  require<Fault::ValueOutOfRange>(within(motion.turn, kMaxTurn<S>), "a motion: the turn is ", motion.turn,
+                                  " rad, allowed are up to ", kMaxTurn<S>, " rad");
+}
+
+template <Scalar S>
 Transform<S> RigidMotion<S>::at(S part) const {
   const Vector<S> rotation = forAngle(mulAdd(turn, part, angle));
   return Transform<S>::rigid(mulAdd(way, part, start) - rotate(pivot, rotation), rotation);
@@ -146,7 +146,16 @@ MovingShape<S>::MovingShape(const PlacedShape<S>& prepared, const RigidMotion<S>
 }
 
 template <Scalar S>
+MovingShape<S>::MovingShape(const PlacedShape<S>& placed) : placed_(placed), stays_(true) {
+  const int count = placed.type == ShapeType::segment ? 3 : placed.count;
+  for (int i = 0; i < count; ++i) planes_[i] = placed.planes[i];
+  placed_.planes = planes_;
+  pivot_ = motion_.start = planes_[0].v0;
+}
+
+template <Scalar S>
 const PlacedShape<S>& MovingShape<S>::at(S part) {
+  if (stays_) return placed_;
   pivot_ = mulAdd(motion_.way, part, motion_.start);
   place(motion_.at(part), placed_);
   return placed_;
@@ -208,6 +217,7 @@ Impact<S> timeOfImpact(const Shape<S>& a, const RigidMotion<S>& motionA, const S
 }
 
 #define SAMESTEP_EACH_SCALAR                                                                         \
+  template void requireMotion<S>(const RigidMotion<S>&);                                             \
   template struct RigidMotion<S>;                                                                    \
   template class MovingShape<S>;                                                                     \
   template ShapeDistance<S> distanceBetween<S>(const PlacedShape<S>&, const PlacedShape<S>&);        \

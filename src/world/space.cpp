@@ -372,6 +372,14 @@ const Remarks& Space<S>::remarks() const {
 // Queries.
 
 template <Scalar S>
+QueryView<S> Space<S>::queries() {
+  requireUsable();
+  Derived<S>& derived = parts_->derived;
+  derived.refresh(state_);
+  return QueryView<S>(state_.shapes, derived.dynamicTree, derived.staticTree, derived.placed.data());
+}
+
+template <Scalar S>
 void Space<S>::pointQuery(const Vector<S>& point, S distance, const ShapeFilter& filter,
                           std::vector<PointHit<S>>& hits) {
   requireUsable();

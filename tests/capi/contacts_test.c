@@ -256,6 +256,36 @@ static void test_queries(int32_t scalar) {
                SAMESTEP_NEGATIVE_HALF_DIMENSIONS, "box", __LINE__);
   check_status(samestep_query_segment(world, 0, 0, 1, 0, -1, NULL, &along, &count), SAMESTEP_NEGATIVE_RADIUS,
                "cast", __LINE__);
+  samestep_segment_hit hits[2];
+  check_status(samestep_query_cast_ray(world, 4, 0, -4, 0, 0, NULL, hits, 1, &count), SAMESTEP_OK, "ray",
+               __LINE__);
+  check(count == 2 && hits[0].shape == right && hits[0].point.x == 2.5, "the nearest comes first", __LINE__);
+  check_status(samestep_query_cast_ray(world, 4, 0, -4, 0, 0, NULL, NULL, 0, &count), SAMESTEP_OK, "count",
+               __LINE__);
+  check(count == 2, "all are counted", __LINE__);
+  check_status(samestep_query_cast_ray(world, 4, 0, -4, 0, 0, NULL, NULL, 1, &count), SAMESTEP_NULL_ARGUMENT,
+               "no room", __LINE__);
+  samestep_shape_def ball;
+  samestep_shape_def_init(&ball);
+  ball.kind = SAMESTEP_CIRCLE;
+  ball.radius = 0.5;
+  samestep_motion motion;
+  memset(&motion, 0, sizeof motion);
+  motion.way.x = 8;
+  check_status(samestep_query_cast_shape(world, &ball, &motion, NULL, hits, 2, &count), SAMESTEP_OK, "cast",
+               __LINE__);
+  check(count == 1 && hits[0].shape == right && hits[0].alpha > 0.12 && hits[0].alpha <= 0.125,
+        "a ball comes to the box", __LINE__);
+  motion.way.x = 1e9;
+  check_status(samestep_query_cast_shape(world, &ball, &motion, NULL, hits, 2, &count),
+               SAMESTEP_VALUE_OUT_OF_RANGE, "cast", __LINE__);
+  samestep_near_hit nearest[2];
+  check_status(samestep_query_near(world, &ball, 1, 0, 0, 5, NULL, nearest, 2, &count), SAMESTEP_OK, "near",
+               __LINE__);
+  check(count == 2 && nearest[0].shape == right && nearest[0].distance == 0 && nearest[1].distance == 2,
+        "by distance", __LINE__);
+  check_status(samestep_query_distance(world, left, right, nearest), SAMESTEP_OK, "distance", __LINE__);
+  check(nearest[0].distance == 3 && nearest[0].normal.x == 1, "three metres", __LINE__);
   samestep_box box;
   check_status(samestep_shape_get_bounding_box(world, left, &box), SAMESTEP_OK, "box", __LINE__);
   check(box.left == -2.5 && box.top == 0.5, "its bounding box", __LINE__);

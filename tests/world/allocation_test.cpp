@@ -474,6 +474,15 @@ TYPED_TEST(AllocationTest, WarmQueriesTakeNoMemory) {
     space.segmentQuery({S(-9), S(0)}, {S(9), S(0)}, S(1), {}, segments);
     space.boxQuery({S(-9), S(-9), S(9), S(9)}, {}, boxes);
     space.eachArbiter(space.staticBody(), [](Arbiter<S>&) {});
+    const QueryView<S> view = space.queries();
+    const Shape<S> asked = circleShape<S>({}, S(1));
+    SegmentHit<S> hits[4];
+    NearHit<S> near[4];
+    ShapeId ids[4];
+    view.castRay({S(-9), S(0)}, {S(9), S(0)}, {}, hits);
+    view.castShape(asked, {{}, {S(-9), S(0)}, S(0), {S(18), S(0)}, S(1)}, {}, hits);
+    view.nearest(asked, Transform<S>(), S(9), {}, near);
+    view.overlapping(asked, Transform<S>(), {}, ids);
   };
   space.step(kTick<S>);
   ask();

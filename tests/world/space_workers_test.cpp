@@ -7,6 +7,7 @@
 #include <samestep/workers.h>
 
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -274,6 +275,36 @@ TEST(SpaceWorkersCheckedTest, CheckedNumbersAreSteppedByTheCallerAlone) {
   const Story alone = play<CheckedFixed>(kKinds[0], nullptr, KernelTarget::best, 10);
   expectSame(alone, play<CheckedFixed>(kKinds[0], &backwards, KernelTarget::best, 10), "checked");
   EXPECT_EQ(backwards.runs, 0);
+}
+
+// Read-only: a race would be seen by ThreadSanitizer, and another answer here.
+TYPED_TEST(SpaceWorkersTest, SeveralThreadsAskOneViewAtTheSameTime) {
+  using S = TypeParam;
+  Space<S> space;
+  fillAtRandom(space, 3);
+  for (int i = 0; i < 10; ++i) space.step(kTick<S>);
+  const QueryView<S> view = space.queries();
+  const Shape<S> asked = boxShape<S>({}, S(2), S(1));
+  const auto answers = [&] {
+    std::string told;
+    for (int i = -8; i <= 8; ++i) {
+      SegmentHit<S> hits[8];
+      NearHit<S> near[8];
+      const std::size_t rays = view.castRay({S(i), S(9)}, {S(-i), S(-9)}, {}, hits);
+      for (std::size_t k = 0; k < rays && k < 8; ++k) told += std::to_string(hits[k].shape.index) + " ";
+      const std::size_t casts =
+          view.castShape(asked, {{}, {S(i), S(9)}, S(0), {S(0), S(-18)}, S(1)}, {}, hits);
+      const std::size_t nears = view.nearest(asked, Transform<S>::translation({S(i), S(0)}), S(2), {}, near);
+      told += std::to_string(casts) + " " + std::to_string(nears) + "\n";
+    }
+    return told;
+  };
+  const std::string expected = answers();
+  std::string told[3];
+  std::vector<std::thread> threads;
+  for (std::string& of : told) threads.emplace_back([&] { of = answers(); });
+  for (std::thread& thread : threads) thread.join();
+  for (const std::string& of : told) EXPECT_EQ(of, expected);
 }
 
 }  // namespace

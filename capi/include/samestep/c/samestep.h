@@ -330,8 +330,8 @@ enum {
 /* What a new body is to be. */
 typedef struct samestep_body_def {
   uint32_t version;
-  int32_t type;     /* SAMESTEP_DYNAMIC at first. */
-  int32_t rotates;  /* 0 for a dynamic body that no impulse turns; 1 at first. */
+  int32_t type;    /* SAMESTEP_DYNAMIC at first. */
+  int32_t rotates; /* 0 for a dynamic body that no impulse turns; 1 at first. */
   int32_t reserved; /* 0 */
   /* 0: the world gives one. Worlds whose ids are all given are the same bit by bit whatever the order in
    * which objects came and went; see samestep_make_id. The index is below 2^16. */
@@ -789,6 +789,48 @@ SAMESTEP_C_API samestep_status samestep_query_segment(samestep_world* world, dou
 SAMESTEP_C_API samestep_status samestep_query_box(samestep_world* world, double left, double bottom,
                                                   double right, double top, const samestep_filter* filter,
                                                   const samestep_shape_id** hits, size_t* count);
+
+/* A motion from part 0 to part 1: a point of a body goes straight on while the body turns about it. */
+typedef struct samestep_motion {
+  samestep_vec2 pivot; /* The point, in the coordinates of the body, m. */
+  samestep_vec2 start; /* Its place as it begins, m. */
+  samestep_vec2 way;   /* Its way, m, each component within 2^21. */
+  double angle;        /* Of the body as it begins, rad. */
+  double turn;         /* Of the body on the way, rad, within 2^8. */
+} samestep_motion;
+
+/* A shape near another one. */
+typedef struct samestep_near_hit {
+  samestep_shape_id shape;
+  double distance;       /* Of the surfaces, m; negative where they overlap. */
+  samestep_vec2 normal;  /* A unit vector from the shape asked about, or the first, to this one. */
+  samestep_vec2 point_a; /* On the surface of the shape asked about, or the first, m. */
+  samestep_vec2 point_b; /* On the surface of this one, m. */
+} samestep_near_hit;
+
+/* These write into an array of the caller's with room for `capacity` hits: the nearest first, of equals by
+ * rising id. `count` is how many there are, also those that found no room; a capacity of 0 takes a null
+ * array. */
+
+/* The shapes that a circle of `radius` meets on its way from one point to another; radius 0: a ray.
+ * SAMESTEP_NEGATIVE_RADIUS. */
+SAMESTEP_C_API samestep_status samestep_query_cast_ray(samestep_world* world, double from_x, double from_y,
+                                                       double to_x, double to_y, double radius,
+                                                       const samestep_filter* filter,
+                                                       samestep_segment_hit* hits, size_t capacity,
+                                                       size_t* count);
+/* The shapes that a shape meets on its way; alpha is the part of the motion. */
+SAMESTEP_C_API samestep_status samestep_query_cast_shape(
+    samestep_world* world, const samestep_shape_def* shape, const samestep_motion* motion,
+    const samestep_filter* filter, samestep_segment_hit* hits, size_t capacity, size_t* count);
+/* The shapes within `reach` of a shape at a place. */
+SAMESTEP_C_API samestep_status samestep_query_near(samestep_world* world, const samestep_shape_def* shape,
+                                                   double x, double y, double angle, double reach,
+                                                   const samestep_filter* filter, samestep_near_hit* hits,
+                                                   size_t capacity, size_t* count);
+/* The distance of two shapes of the world. SAMESTEP_SHAPE_NOT_FOUND. */
+SAMESTEP_C_API samestep_status samestep_query_distance(samestep_world* world, samestep_shape_id a,
+                                                       samestep_shape_id b, samestep_near_hit* hit);
 
 /* How two shapes touch. */
 typedef struct samestep_touch {
