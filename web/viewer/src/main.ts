@@ -6,6 +6,8 @@ import { Timeline } from './timeline.js';
 import { View } from './view.js';
 
 const SCENE_TICKS = 600;
+/** Milliseconds of each frame for steps. */
+const SLICE = 30;
 const byId = <T extends HTMLElement>(name: string): T => document.getElementById(name) as T;
 const checked = (name: string): boolean => byId<HTMLInputElement>(name).checked;
 
@@ -69,6 +71,9 @@ class Pane {
 
 let panes: Pane[] = [];
 let tick = 0;
+/** Where to go: step by step from the last keyframe before it, so many in each frame as its time allows. */
+let target = 0;
+let leftAt = 0;
 let playing = false;
 let due = 0;
 let difference: number | undefined;
@@ -87,19 +92,34 @@ function attempt(action: () => void): void {
     action();
   } catch (error) {
     playing = false;
+    target = tick;
     say(error instanceof Error ? error.message : String(error));
   }
 }
 function goTo(wanted: number): void {
+  target = Math.min(Math.max(wanted, 0), last());
+  leftAt = performance.now();
+  advance(SLICE);
+}
+function nextTick(): number {
+  const nearest = panes[0]!.player.keyframes.filter((at) => at <= target).at(-1) ?? 0;
+  return target < tick || nearest > tick ? nearest : tick + 1;
+}
+/** Comes nearer to where to go, for some milliseconds. */
+function advance(milliseconds: number): void {
+  const end = performance.now() + milliseconds;
   attempt(() => {
-    tick = Math.min(Math.max(wanted, 0), last());
-    for (const pane of panes) pane.seek(tick);
+    while (tick !== target && performance.now() < end) {
+      tick = nextTick();
+      for (const pane of panes) pane.seek(tick);
+      dirty = true;
+    }
   });
-  dirty = true;
 }
 function play(on: boolean): void {
   playing = on && panes.length > 0;
   if (playing && tick >= last()) goTo(0);
+  else target = tick;
   byId('play').textContent = playing ? 'II' : '▶';
   byId('play').setAttribute('aria-label', playing ? 'Pause' : 'Play');
 }
@@ -122,6 +142,7 @@ function showDifference(): void {
   if (a === undefined || b === undefined || difference === undefined) return;
   play(false);
   goTo(difference);
+  advance(Infinity);
   attempt(() => {
     const fields = a.player.world.difference(b.player.world, 5).trim();
     byId('found').textContent = `After step ${difference}: ${fields === '' ? 'only the recorded hashes differ' : fields}`;
@@ -157,7 +178,9 @@ async function open(name: string, bytes: Uint8Array): Promise<void> {
     byId('found').textContent = difference === undefined
       ? 'Both recordings are the same as far as both go.' : `They part at step ${difference}.`;
   }
-  goTo(panes.length === 1 ? 0 : tick);
+  if (panes.length === 1) tick = target = 0;
+  attempt(() => pane.seek(tick));
+  dirty = true;
 }
 async function openFiles(files: Iterable<File>): Promise<void> {
   for (const file of files) {
@@ -203,13 +226,19 @@ function frame(now: number): void {
   before = now;
   if (playing) {
     due += (seconds * Number(byId<HTMLSelectElement>('speed').value)) / panes[0]!.player.seconds;
+    const steps = Math.floor(due);
+    due -= steps;
     // What this machine cannot keep up with is not caught up.
-    const end = performance.now() + 30;
-    for (; due >= 1 && tick < last() && performance.now() < end; --due) goTo(tick + 1);
-    due = Math.min(due, 1);
+    target = Math.min(tick + steps, last());
+    leftAt = now;
+  }
+  if (tick !== target) advance(SLICE);
+  if (playing) {
+    target = tick;
     if (tick >= last()) play(false);
   }
-  if (panes.length > 0) {
+  // On the way to a tick, what is shown stays for a moment.
+  if (panes.length > 0 && (tick === target || now - leftAt > 250)) {
     for (const pane of panes) {
       pane.view.following = checked('follow');
       pane.draw();
