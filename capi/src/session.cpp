@@ -29,7 +29,8 @@ namespace {
 
 static_assert(static_cast<int>(SessionEvent::Kind::desync) == SAMESTEP_SESSION_DESYNC);
 static_assert(static_cast<int>(SessionEvent::Kind::ended) == SAMESTEP_SESSION_OVER);
-static_assert(static_cast<int>(SessionState::ended) == SAMESTEP_SESSION_ENDED);
+static_assert(static_cast<int>(SessionEvent::Kind::lied) == SAMESTEP_SESSION_LIED);
+static_assert(static_cast<int>(SessionState::joining) == SAMESTEP_SESSION_JOINING);
 static_assert(static_cast<int>(Frame::idle) == SAMESTEP_FRAME_IDLE);
 static_assert(kSaveSlots + kKeepSlots == 22, "What samestep_own_state says.");
 
@@ -45,6 +46,8 @@ SessionSettings toSettings(const samestep_session_def& from) {
   SessionSettings settings;
   settings.match = from.match;
   settings.players = narrow<std::uint8_t>(from.players);
+  settings.maxPlayers = narrow<std::uint8_t>(from.max_players);
+  settings.joins = from.joins != 0;
   settings.localSeat = narrow<Seat>(from.local_seat);
   std::copy(std::begin(from.addresses), std::end(from.addresses), settings.addresses);
   settings.window = narrow<std::uint8_t>(from.window);

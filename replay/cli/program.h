@@ -51,6 +51,8 @@ void addTune(CLI::App& app, int& result);
 void addNetsim(CLI::App& app, int& result);
 /// Nothing where the build is without samestep::transport.
 void addMatch(CLI::App& app, int& result);
+/// Nothing where the build is without cpp-httplib.
+void addView(CLI::App& app, int& result);
 
 /// Adds --scalar with the scalars of this build.
 void addScalarOption(CLI::App& app, std::string& scalar);

@@ -58,6 +58,7 @@ int samestep::runProgram(int argc, char** argv, const Wirings& wirings) {
   addTune(app, result);
   addNetsim(app, result);
   addMatch(app, result);
+  addView(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -49,12 +49,21 @@ test('a flipped bit is found, and the body and its field are named', async () =>
   await end();
 });
 
-test('a peer whose Worker has ended is dropped, and the other says so', async () => {
+test('a peer whose Worker has ended is dropped, and joins the match that goes on', async () => {
   const { page, errors, end } = await open(site);
   await agreed(page, 3);
   await page.click('#kill');
-  await page.waitForFunction(() => /A: (dropped|over)/.test(document.getElementById('verdict').textContent),
+  await page.waitForFunction(() => /A: dropped/.test(document.getElementById('verdict').textContent),
     undefined, { timeout: 60000 });
+  await page.waitForTimeout(1000);
+  const before = await number(page, 0, 'tick');
+  await page.click('#kill');
+  await page.waitForFunction(() => /joined/.test(document.getElementById('verdict').textContent), undefined,
+    { timeout: 60000 });
+  await page.locator('#list').evaluate((list) => list.replaceChildren());
+  await agreed(page, 3);
+  assert.ok((await number(page, 1, 'tick')) > before);
+  assert.equal(await page.locator('#list .other').count(), 0);
   assert.deepEqual(errors, []);
   await end();
 });

@@ -9,7 +9,7 @@ const slider = (name: string): number => Number(byId<HTMLInputElement>(name).val
 const { module } = await init();
 
 /** What players want to know; that a slow network was silent for a while is not of it. */
-const TOLD = /^(refused|left|dropped|desync|located|over|\w*Error)/;
+const TOLD = /^(refused|left|dropped|desync|located|over|joined|lied|\w*Error)/;
 
 type Frame = Extract<FromPeer, { kind: 'frame' }>;
 interface Peer {
@@ -20,6 +20,9 @@ interface Peer {
   ghostsUntil: number;
 }
 
+const END = "End B's Worker";
+const JOIN = 'B joins again';
+let crates = 0;
 let peers: Peer[] = [];
 let hashes = new Map<number, [string?, string?]>();
 let timers = new Set<ReturnType<typeof setTimeout>>();
@@ -73,6 +76,26 @@ function hear(seat: number, message: FromPeer): void {
   }
 }
 
+function startPeer(seat: number): Peer {
+  const worker = new Worker(new URL('./peer.ts', import.meta.url), { type: 'module' });
+  worker.addEventListener('message', ({ data }: MessageEvent<FromPeer>) => {
+    if (peers[seat]?.worker === worker) hear(seat, data);
+  });
+  worker.addEventListener('error', (event) => (byId('verdict').textContent = `${'AB'[seat]}: ${event.message}`));
+  return { worker, frame: undefined, ghosts: undefined, ghostsUntil: 0 };
+}
+/** Ends B's Worker, or has a new one take its seat in the match that A plays on. */
+function endOrJoin(): void {
+  const button = byId('kill');
+  const gone = button.textContent === JOIN;
+  button.textContent = gone ? END : JOIN;
+  peers[1]!.worker.terminate();
+  if (!gone) return;
+  byId('verdict').textContent = '';
+  peers[1] = startPeer(1);
+  tell(1, { kind: 'begin', seat: 1, crates, joins: true, module });
+}
+
 function begin(): void {
   for (const peer of peers) peer.worker.terminate();
   for (const timer of timers) clearTimeout(timer);
@@ -80,16 +103,10 @@ function begin(): void {
   hashes = new Map();
   byId('list').replaceChildren();
   byId('verdict').textContent = '';
-  const crates = slider('crates');
-  peers = [0, 1].map((seat) => {
-    const worker = new Worker(new URL('./peer.ts', import.meta.url), { type: 'module' });
-    worker.addEventListener('message', ({ data }: MessageEvent<FromPeer>) => {
-      if (peers[seat]?.worker === worker) hear(seat, data);
-    });
-    worker.addEventListener('error', (event) => (byId('verdict').textContent = `${'AB'[seat]}: ${event.message}`));
-    return { worker, frame: undefined, ghosts: undefined, ghostsUntil: 0 };
-  });
-  peers.forEach((_, seat) => tell(seat, { kind: 'begin', seat, crates, module }));
+  byId('kill').textContent = END;
+  crates = slider('crates');
+  peers = [0, 1].map(startPeer);
+  peers.forEach((_, seat) => tell(seat, { kind: 'begin', seat, crates, joins: false, module }));
 }
 
 const COLORS = ['#2f7fd6', '#e0812f'];
@@ -170,7 +187,7 @@ for (const input of document.querySelectorAll<HTMLInputElement>('input[type=rang
   show();
 }
 byId('flip').addEventListener('click', () => tell(1, { kind: 'flip' }));
-byId('kill').addEventListener('click', () => peers[1]?.worker.terminate());
+byId('kill').addEventListener('click', endOrJoin);
 byId('anew').addEventListener('click', begin);
 byId('crates').addEventListener('change', begin);
 begin();

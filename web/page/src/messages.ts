@@ -3,7 +3,7 @@ import type { SessionState } from 'samestep';
 
 /** What the page says to a peer. */
 export type ToPeer =
-  | { kind: 'begin'; seat: number; crates: number; module: WebAssembly.Module }
+  | { kind: 'begin'; seat: number; crates: number; joins: boolean; module: WebAssembly.Module }
   | { kind: 'datagram'; from: number; bytes: Uint8Array }
   | { kind: 'held'; keys: number }
   | { kind: 'flip' };

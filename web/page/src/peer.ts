@@ -28,13 +28,14 @@ function poses(world: World): Float32Array {
   return all;
 }
 
-async function begin({ seat, crates, module }: Extract<ToPeer, { kind: 'begin' }>): Promise<void> {
+async function begin({ seat, crates, joins, module }: Extract<ToPeer, { kind: 'begin' }>): Promise<void> {
   const engine = await init({ wasm: module });
   const world = createRoom(engine, crates);
   const hashes = new Map<number, string>();
   let told = 0;
   const session: Session = world.startSession({
     localSeat: seat,
+    joins,
     maxHeldBytes: 1,
     hashInterval: 30,
     transport: {
@@ -49,6 +50,8 @@ async function begin({ seat, crates, module }: Extract<ToPeer, { kind: 'begin' }
     },
   });
   const tellHashes = (confirmed: number): void => {
+    // Who joins begins at a later tick.
+    while (told < confirmed && !hashes.has(told)) ++told;
     for (; told <= confirmed && hashes.has(told); ++told) {
       if (told % 10 === 0) post({ kind: 'hash', tick: told, hash: hashes.get(told)! });
       hashes.delete(told - 32);

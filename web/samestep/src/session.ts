@@ -32,8 +32,12 @@ export interface SessionDef {
   /** Does to the world what the players do in a tick; by the world and the inputs alone. */
   applyInputs(world: World, tick: number, players: PlayerInput[]): void;
   own?: OwnState;
-  /** 2 to 16; 2 at first. */
+  /** Seats taken at the start, 2 to 16; 2 at first. */
   players?: number;
+  /** The most seats, the same for all peers; as many as `players` where left out. */
+  maxPlayers?: number;
+  /** Takes the local seat in a match that is under way. The world is to be as the others' was at the start. */
+  joins?: boolean;
   localSeat: number;
   /** Where the transport finds each seat; the seats themselves where left out. */
   addresses?: readonly number[];
@@ -59,8 +63,8 @@ const frames: readonly Frame[] = ['advanced', 'waiting', 'paused', 'idle'];
 
 /** How a session stands. */
 export interface SessionState {
-  state: 'connecting' | 'running' | 'ended';
-  endReason: 'none' | 'left' | 'refused' | 'dropped' | 'minority' | 'diverged';
+  state: 'connecting' | 'running' | 'ended' | 'joining';
+  endReason: 'none' | 'left' | 'refused' | 'dropped' | 'minority' | 'diverged' | 'notAdmitted';
   /** Steps made. */
   tick: number;
   /** Steps whose inputs are all known. */
@@ -91,10 +95,14 @@ export interface SessionEvent {
 }
 const eventKinds = [
   'started', 'refused', 'interrupted', 'resumed', 'paused', 'unpaused', 'left', 'dropped', 'desync', 'located', 'over',
+  'joined', 'lied',
 ] as const;
+
+const endReasons = ['none', 'left', 'refused', 'dropped', 'minority', 'diverged', 'notAdmitted'] as const;
 
 const NUMBERS = {
   players: 'players',
+  maxPlayers: 'max_players',
   localSeat: 'local_seat',
   match: 'match',
   rate: 'rate',
@@ -198,8 +206,8 @@ export class Session {
       this.#check(core.call.samestep_session_get_state(this.#at(), at));
       const number = (field: number) => core.u32[(at + field) >> 2]!;
       return {
-        state: (['connecting', 'running', 'ended'] as const)[number(place.state)]!,
-        endReason: (['none', 'left', 'refused', 'dropped', 'minority', 'diverged'] as const)[number(place.end_reason)]!,
+        state: (['connecting', 'running', 'ended', 'joining'] as const)[number(place.state)]!,
+        endReason: endReasons[number(place.end_reason)]!,
         tick: number(place.tick),
         confirmed: number(place.confirmed),
         present: number(place.present),
@@ -267,6 +275,7 @@ function writeDef(core: Core, at: number, def: SessionDef, key: number): void {
     set(place[field], time === undefined ? undefined : time * 1000);
   }
   for (let seat = 0; seat < 16; ++seat) core.setWide(at + place.addresses + 8 * seat, def.addresses?.[seat] ?? seat);
+  set(place.joins, Number(def.joins ?? false));
   set(place.apply_inputs, functionAt(core, Place.applyInputs));
   set(place.data, key);
   set(place.send, functionAt(core, Place.send));

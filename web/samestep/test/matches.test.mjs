@@ -101,18 +101,24 @@ function lossyPair() {
   return { transports: [transport(0), transport(1)], tickTo: (time) => { now = time; } };
 }
 
-/** Plays so many frames; `each` may meddle with the worlds. */
-function playMatch(frames, each = () => {}) {
-  const net = lossyPair();
-  const worlds = [room(), room()];
-  const sessions = worlds.map((world, localSeat) => world.startSession({
-    transport: net.transports[localSeat], localSeat, maxHeldBytes: 1, hashInterval: 20,
+/** The session of a seat in the match of the tests. */
+function startSeat(world, localSeat, transport, more = {}) {
+  return world.startSession({
+    transport, localSeat, maxHeldBytes: 1, hashInterval: 20, dropAfter: 1000,
     applyInputs(of, _tick, players) {
       players.forEach(({ held, present }, seat) => {
         if (present && held.length === 1) of.body(id(seat + 1)).applyImpulse({ x: held[0] - 1, y: 0 });
       });
     },
-  }));
+    ...more,
+  });
+}
+
+/** Plays so many frames; `each` may meddle with the worlds. */
+function playMatch(frames, each = () => {}) {
+  const net = lossyPair();
+  const worlds = [room(), room()];
+  const sessions = worlds.map((world, seat) => startSeat(world, seat, net.transports[seat]));
   const events = [];
   for (let frame = 0; frame < frames; ++frame) {
     net.tickTo(frame * 17);
@@ -144,6 +150,27 @@ test('a world that was changed behind the session is found and named', () => {
   });
   assert.ok(events.some((event) => event.kind === 'desync'));
   assert.match(sessions[0].desync + sessions[1].desync, /body 2/);
+});
+
+test('a player whose machine went down joins the match that goes on', () => {
+  const net = lossyPair();
+  const frame = (session, number) => session.frame(number * 17, Uint8Array.of((number >> 4) % 3));
+  const stays = startSeat(room(), 0, net.transports[0]);
+  let other = startSeat(room(), 1, net.transports[1]);
+  const seen = [];
+  for (let number = 0; number < 900; ++number) {
+    net.tickTo(number * 17);
+    if (number === 200) other.dispose();
+    if (number === 400) other = startSeat(room(), 1, net.transports[1], { joins: true });
+    frame(stays, number);
+    if (number < 200 || number >= 400) frame(other, number);
+    for (const session of number < 200 || number >= 400 ? [stays, other] : [stays]) {
+      for (let event = session.nextEvent(); event !== undefined; event = session.nextEvent()) seen.push(event.kind);
+    }
+  }
+  assert.ok(seen.includes('dropped') && seen.includes('joined'), seen.join());
+  assert.equal(seen.includes('desync'), false);
+  assert.ok(other.state.tick > 600, `${other.state.tick}`);
 });
 
 test('a data channel carries datagrams', () => {

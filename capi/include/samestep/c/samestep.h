@@ -1352,6 +1352,8 @@ typedef struct samestep_session_def {
   uint32_t end_after;         /* A match without most of its players ends; 15000000 at first. */
   uint32_t gone_after;        /* When two leave at once, one waits so long for the other; 1000000 at first. */
   uint32_t paused_at_most;    /* A longer pause drops its peer; 300000000 at first. */
+  uint32_t max_players;       /* Seats, `players` to 16, the same for all peers; 0: as many as `players`. */
+  uint32_t joins;             /* 1 takes the local seat in a match under way, in place of starting one. */
   uint32_t reserved;          /* 0 */
   uint64_t content;           /* Of the game's own data, as a hash: peers compare it before they start. */
   samestep_apply_inputs apply_inputs;
@@ -1406,13 +1408,15 @@ SAMESTEP_C_API samestep_status samestep_session_set_window(samestep_session* ses
 enum {
   SAMESTEP_SESSION_CONNECTING = 0, /* Some peers were not heard yet. */
   SAMESTEP_SESSION_RUNNING = 1,    /* The match is played. */
-  SAMESTEP_SESSION_ENDED = 2       /* For good. */
+  SAMESTEP_SESSION_ENDED = 2,      /* For good. */
+  SAMESTEP_SESSION_JOINING = 3     /* The state of a match under way is on its way here. */
 };
 
 /* All that a game may want to know of a session. */
 typedef struct samestep_session_state {
   int32_t state;         /* SAMESTEP_SESSION_CONNECTING and so on. */
-  int32_t end_reason;    /* 0 none, 1 left, 2 refused, 3 dropped, 4 minority, 5 diverged: docs/lockstep.md. */
+  int32_t end_reason;    /* 0 none, 1 left, 2 refused, 3 dropped, 4 minority, 5 diverged, 6 not admitted:
+                            docs/lockstep.md. */
   uint32_t tick;         /* Steps made. */
   uint32_t confirmed;    /* Steps whose inputs are all known; it may be ahead of the tick. */
   uint32_t present;      /* Bit by seat: who plays now. */
@@ -1444,14 +1448,16 @@ enum {
   SAMESTEP_SESSION_DROPPED = 7,     /* The same, agreed by the others. */
   SAMESTEP_SESSION_DESYNC = 8, /* States after `tick` steps differ: `local_hash` here, `remote_hash` there. */
   SAMESTEP_SESSION_LOCATED = 9, /* What differs has been found: samestep_session_write_desync. */
-  SAMESTEP_SESSION_OVER = 10    /* The match has ended here. */
+  SAMESTEP_SESSION_OVER = 10,   /* The match has ended here. */
+  SAMESTEP_SESSION_JOINED = 11, /* `seat` plays from `tick` on. */
+  SAMESTEP_SESSION_LIED = 12    /* The state that `seat` sent is not the one that most players have. */
 };
 /* Something that the game may want to show. */
 typedef struct samestep_session_event {
   int32_t kind;
-  uint32_t seat; /* 255: none. */
-  uint32_t
-      detail; /* Of a refusal: 1 protocol, 2 players, 3 settings, 4 revision, 5 fingerprint, 6 content. */
+  uint32_t seat;   /* 255: none. */
+  uint32_t detail; /* Of a refusal: 1 protocol, 2 players, 3 settings, 4 revision, 5 fingerprint, 6 content, 7
+                      seat. */
   uint32_t tick;
   uint64_t local_hash;
   uint64_t remote_hash;
