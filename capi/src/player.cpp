@@ -65,13 +65,13 @@ struct PlayerOf : samestep_player {
   }
   samestep_player_command listed(const Command<S>& command) const {
     const BodyId body = std::visit(
-        [](const auto& of) {
-          if constexpr (requires { of.body.index; }) {
-            return of.body;
-          } else if constexpr (requires { of.id; }) {
+        [](const auto& of) -> BodyId {
+          if constexpr (std::is_same_v<decltype(of), const Spawn<S>&>) {
             return of.id;
+          } else if constexpr (requires { of.body; }) {
+            return of.body;
           } else {
-            return BodyId{};
+            return {};
           }
         },
         command);

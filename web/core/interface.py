@@ -39,7 +39,8 @@ def constants():
     both = ({}, {})
     for constant in DESCRIPTION["constants"]:
         name, value = constant["name"].removeprefix("SAMESTEP_"), constant["value"]
-        is_status = "OK" in both[0] and "LEFT_MIDWAY" not in both[0] or name == "OK"
+        # Statuses stand before the scalars.
+        is_status = "OK" in both[0] and "FIXED" not in both[1] and name != "FIXED" or name == "OK"
         both[not is_status][name] = value
     return both
 

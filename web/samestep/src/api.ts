@@ -6,6 +6,7 @@ export type { BodyDef, BodyType, Filter, Settings, ShapeDef, Surface } from './d
 export { Engine, type InitOptions } from './engine.js';
 export { type Code, SamestepError } from './error.js';
 export { type BodyId, generationOf, id, indexOf, type ShapeId } from './id.js';
+export { Joint, type JointDef, type JointId, type JointKind } from './joint.js';
 export {
   type Command, type PlayedCommand, Player, type PlayerState, Recorder, type Verdict, type VerifyOptions, type Wiring,
 } from './recording.js';

@@ -3,6 +3,7 @@ import * as abi from './abi.js';
 import { hexOf, type Vec2 } from './core.js';
 import { bodyTypes, type BodyType, type ShapeDef, withShape } from './definitions.js';
 import { type BodyId, high, low } from './id.js';
+import { Joint } from './joint.js';
 import { Shape } from './shape.js';
 import type { World } from './world.js';
 
@@ -243,6 +244,15 @@ export class Body {
       this.#check(this.#call.samestep_body_get_shapes(pointer, this.#low, this.#high, at, at + 4));
       const [first, count] = [core.u32[at >> 2]!, core.u32[(at + 4) >> 2]!];
       return Array.from({ length: count }, (_, i) => new Shape(this.world, core.id(first + 8 * i)));
+    });
+  }
+  /** Its joints, by rising id. */
+  get joints(): Joint[] {
+    const { core, pointer } = this.world;
+    return core.withStack(8, (at) => {
+      this.#check(this.#call.samestep_body_get_joints(pointer, this.#low, this.#high, at, at + 4));
+      const [first, count] = [core.u32[at >> 2]!, core.u32[(at + 4) >> 2]!];
+      return Array.from({ length: count }, (_, i) => new Joint(this.world, core.id(first + 8 * i)));
     });
   }
   /** Its own hash, to find where two worlds differ. */

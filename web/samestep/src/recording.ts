@@ -4,6 +4,7 @@ import { type Core, hexOf, type Vec2 } from './core.js';
 import { type BodyDef, type ShapeDef, sizeOfShape, writeBody, writeShape } from './definitions.js';
 import { SamestepError } from './error.js';
 import { type BodyId, fromHalves } from './id.js';
+import { type JointDef, type JointId, writeJoint } from './joint.js';
 import { functionAt, type Limits, Place, type Scalar, withLimits, World } from './world.js';
 
 /** What a player or the game does to a world between two steps. */
@@ -19,16 +20,22 @@ export type Command =
   | { kind: 'spawn'; body: BodyDef; shapes: readonly ShapeDef[] }
   | { kind: 'remove'; body: BodyId }
   /** Bytes that only the game understands. */
-  | { kind: 'input'; bytes: Uint8Array };
+  | { kind: 'input'; bytes: Uint8Array }
+  | { kind: 'join'; joined: JointDef }
+  /** The joint becomes what is said. */
+  | { kind: 'adjust'; joint: JointId; joined: JointDef }
+  | { kind: 'unjoin'; joint: JointId };
 export const commandKinds: readonly Command['kind'][] = [
   'impulse', 'force', 'velocity', 'angularVelocity', 'position', 'angle', 'spawn', 'remove', 'input',
+  'join', 'adjust', 'unjoin',
 ];
 
 /** Runs an action with a command in memory, and room for the id of a spawned body. */
 export function withCommand<T>(core: Core, command: Command, action: (at: number, body: number) => T): T {
   const place = abi.command;
   const shapes = command.kind === 'spawn' ? command.shapes : [];
-  const tail = command.kind === 'input' ? command.bytes.length : 0;
+  const joined = 'joined' in command ? command.joined : undefined;
+  const tail = command.kind === 'input' ? command.bytes.length : joined === undefined ? 0 : abi.joint_def.size_of;
   const shapesAt = place.size_of + 8 + abi.body_def.size_of;
   const verticesAt = shapesAt + shapes.length * abi.shape_def.size_of;
   const size = shapesAt + shapes.reduce((sum, shape) => sum + sizeOfShape(shape), 0);
@@ -50,15 +57,20 @@ export function withCommand<T>(core: Core, command: Command, action: (at: number
       core.u8.set(command.bytes, at + size);
       core.u32[(at + place.bytes) >> 2] = at + size;
       core.u32[(at + place.byte_count) >> 2] = command.bytes.length;
-    } else {
+    } else if ('body' in command) {
       core.setId(at + place.body, command.body);
       writeValue(core, at, command);
+    }
+    if ('joint' in command) core.setId(at + place.joint, command.joint);
+    if (joined !== undefined) {
+      writeJoint(core, at + size, joined);
+      core.u32[(at + place.joined) >> 2] = at + size;
     }
     return action(at, at + place.size_of);
   });
 }
 
-function writeValue(core: Core, at: number, command: Exclude<Command, { kind: 'spawn' | 'input' }>): void {
+function writeValue(core: Core, at: number, command: Exclude<Command, { kind: 'spawn' | 'input' | 'join' | 'adjust' | 'unjoin' }>): void {
   const value = at + abi.command.value;
   switch (command.kind) {
     case 'impulse':

@@ -10,6 +10,7 @@ import { SamestepError } from './error.js';
 import { type BodyId, high, low, type ShapeId } from './id.js';
 import { type Command, Recorder, withCommand } from './recording.js';
 import { Session, type SessionDef } from './session.js';
+import { Joint, type JointDef, type JointId } from './joint.js';
 import { Shape } from './shape.js';
 
 export type Scalar = 'fixed' | 'double';
@@ -207,6 +208,16 @@ export class World {
   }
   shape(id: ShapeId): Shape {
     return new Shape(this, id);
+  }
+  addJoint(def: JointDef): Joint {
+    return Joint.create(this, def);
+  }
+  joint(id: JointId): Joint {
+    return new Joint(this, id);
+  }
+  get jointCount(): number {
+    return this.#get(4, (at) => this.#call.samestep_world_get_joint_count(this.pointer, at),
+      (at) => this.core.u32[at >> 2]!);
   }
   /** The body for what never moves, always there. */
   get staticBody(): Body {

@@ -144,6 +144,25 @@ test('handlers change contacts, and what they throw ends the step and leaves all
   assert.equal(ball3.exists, false);
 });
 
+test('joints hold bodies together, break, and are what their definitions say', () => {
+  const { world, ball } = worldWithBall();
+  const hinge = world.addJoint({
+    kind: 'revolute', id: id(1), bodyA: world.staticBody.id, bodyB: ball.id, anchorA: { x: 0, y: 8 }, anchorB: { x: 0, y: 3 },
+  });
+  assert.deepEqual([hinge.definition.kind, hinge.definition.anchorB, world.jointCount], ['revolute', { x: 0, y: 3 }, 1]);
+  steps(world, 60);
+  assert.ok(Math.abs(ball.position.y - 5) < 0.1, `${ball.position.y}`);
+  assert.ok(hinge.load.force.y > 20, 'it bears the ball');
+  assert.deepEqual(ball.joints.map((joint) => joint.id), [id(1)]);
+  assert.throws(() => world.joint(id(9)).definition, refused('JOINT_NOT_FOUND'));
+  assert.throws(() => world.addJoint({ kind: 'weld', bodyA: ball.id, bodyB: ball.id }), refused('ILLEGAL_JOINT'));
+  world.apply({ kind: 'unjoin', joint: id(1) });
+  assert.equal(hinge.exists, false);
+  world.apply({ kind: 'join', joined: { kind: 'distance', bodyA: world.staticBody.id, bodyB: ball.id, rest: 5 } });
+  steps(world, 30);
+  assert.equal(world.jointCount, 1);
+});
+
 test('functions of the game move bodies', () => {
   const { world, ball } = worldWithBall();
   world.registerVelocityFunction(5, (body, gravity, damping, seconds) =>

@@ -183,6 +183,20 @@ export class View {
     this.#app.render();
     this.#drawOverlay(world, layers, now, places);
   }
+  #drawJoints(
+    world: World, context: CanvasRenderingContext2D, color: string, at: (x: number, y: number) => [number, number],
+  ): void {
+    for (const id of this.#bodies.keys()) {
+      for (const joint of world.body(id).joints) {
+        const { bodyA, bodyB, anchorA, anchorB } = joint.definition;
+        if (bodyA !== id) continue;
+        const [from, to] = [world.body(bodyA).toWorld(anchorA), world.body(bodyB).toWorld(anchorB)];
+        line(context, color, ...at(from.x, from.y), ...at(to.x, to.y));
+        const [x, y] = at(to.x, to.y);
+        context.strokeRect(x - 2.5, y - 2.5, 5, 5);
+      }
+    }
+  }
   /** Follows the marked body, if that is wanted. */
   following = false;
   #place(ids: Float64Array, places: Float32Array): void {
@@ -233,6 +247,7 @@ export class View {
       context.arc(x, y, 14, 0, 2 * Math.PI);
       context.stroke();
     });
+    if (world.jointCount > 0) this.#drawJoints(world, context, text, at);
     if (!layers.contacts) return;
     for (const { points, normal } of world.contacts()) {
       for (const { pointA } of points) {
