@@ -12,6 +12,7 @@
 #include <samestep/sealed_transport.h>
 
 #include "check.h"
+#include "relay/bundle.h"
 #include "session/input_stream.h"
 #include "transport/handshake.h"
 
@@ -47,6 +48,35 @@ void inputsOfAPacket(Span bytes) {
     const lockstep::InputEntry entry = stream.at(tick);
     expect(entry.held.size() <= 8 && entry.commands.size() <= 16, "no input is longer than it may be");
   }
+}
+
+/// Reads the packets of a bundle: put together again, they are the same packets.
+void packetsOfABundle(Span bytes) {
+  std::vector<std::pair<Seat, std::vector<std::uint8_t>>> packets;
+  std::array<std::uint8_t, kMaxPacket> packet;
+  lockstep::BundleReader reader(bytes);
+  lockstep::BundleQueue queue;
+  Seat seat = 0;
+  while (const std::uint32_t size = reader.next(seat, packet)) {
+    expect(size <= kMaxPacket && seat < kMaxPlayers, "no packet is longer than it may be");
+    // A later packet of inputs would take the place of one before.
+    packet[0] = static_cast<std::uint8_t>(packet[0] | 4);
+    if (!queue.add(seat, std::span(packet).first(size))) break;
+    packets.emplace_back(seat, std::vector(packet.begin(), packet.begin() + size));
+  }
+  std::size_t at = 0;
+  std::array<std::uint8_t, kMaxDatagram> bundle;
+  while (const std::uint32_t size = queue.take(bundle)) {
+    lockstep::BundleReader again(std::span(bundle).first(size));
+    while (const std::uint32_t length = again.next(seat, packet)) {
+      const bool same = at < packets.size() && packets[at].first == seat &&
+                        packets[at].second.size() == length &&
+                        std::equal(packets[at].second.begin(), packets[at].second.end(), packet.begin());
+      expect(same, "packets come out of a bundle as they went in");
+      ++at;
+    }
+  }
+  expect(at == packets.size(), "all packets come out of their bundles");
 }
 
 /// Wire of a transport: what it sends and is given.
@@ -120,6 +150,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const Span bytes(data + 1, size - 1);
   guarded([&] {
+    if (data[0] > 250) return packetsOfABundle(bytes);
     switch (data[0] % 3) {
       case 0:
         return inputsOfATick(bytes);

@@ -32,11 +32,16 @@ struct AddingGame {
     game.load = [](std::uint32_t slot, void* data) { self(data).load(slot); };
     game.step = [](const TickInputs& inputs, void* data) { self(data).step(inputs); };
     game.hash = [](void* data) { return self(data).sum; };
+    game.write = [](std::uint32_t slot, std::span<std::uint8_t> into, void* data) {
+      expect(slot >= kSaveSlots && slot < kSlots, "a state is written that was kept");
+      if (into.size() >= 8) std::memcpy(into.data(), &self(data).saved[slot].sum, 8);
+      return std::uint64_t{8};
+    };
     return game;
   }
   static AddingGame& self(void* data) { return *static_cast<AddingGame*>(data); }
   void save(std::uint32_t slot) {
-    expect(slot < kSaveSlots, "a state is saved in a slot that is there");
+    expect(slot < kSlots, "a state is saved in a slot that is there");
     saved[slot] = {at, sum};
   }
   void load(std::uint32_t slot) {
@@ -60,7 +65,8 @@ struct AddingGame {
   };
   Tick at = 0;
   std::uint64_t sum = 0;
-  std::array<State, kSaveSlots> saved{};
+  static constexpr std::uint32_t kSlots = kSaveSlots + kKeepSlots;
+  std::array<State, kSlots> saved{};
   std::array<std::uint64_t, kSums> sums{};
 };
 
@@ -70,6 +76,8 @@ class Table {
   explicit Table(std::uint8_t choice) : players_(static_cast<Seat>(2 + choice % 3)) {
     SessionSettings settings;
     settings.players = players_;
+    // A newcomer may take the seat after those of the start.
+    settings.maxPlayers = static_cast<std::uint8_t>(players_ + 1);
     settings.window = choice >> 2 & 7;
     settings.inputDelay = choice >> 5 & 3;
     settings.saving = (choice & 128) != 0 ? Saving::sparse : Saving::everyStep;
@@ -149,7 +157,7 @@ class Table {
   Seat players_;
   std::array<End, kMaxPlayers> ends_{};
   std::array<AddingGame, 4> games_{};
-  std::array<std::vector<Mail>, 4> boxes_{};
+  std::array<std::vector<Mail>, 5> boxes_{};
   std::vector<std::unique_ptr<Session>> sessions_;
 };
 
@@ -241,7 +249,7 @@ class Run {
   void makeUp(Seat to) {
     const std::uint8_t kind = bytes_.next();
     Mail mail;
-    mail.from = (kind >> 4) % table_.players();
+    mail.from = (kind >> 4) % (table_.players() + 1u);
     const auto rest = bytes_.take(bytes_.next() % 64);
     mail.size = static_cast<std::uint32_t>(3 + rest.size());
     mail.bytes[0] = static_cast<std::uint8_t>((kind & 15) | mail.from << 4);

@@ -16,6 +16,7 @@
 #include <samestep/verify.h>
 
 #include "loopback/player.h"
+#include "loopback/relay_process.h"
 
 namespace samestep::loopback {
 
@@ -37,6 +38,11 @@ Table setTable(const MatchOptions& options) {
     table.keys.push_back(KeyPair::generate());
   }
   table.match.bytes = KeyPair::generate().secretKey;
+  if (options.relay) {
+    table.relay = std::make_unique<UdpTransport>("127.0.0.1");
+    const auto secret = KeyPair::generate().secretKey;
+    table.relayWord.assign(secret.begin(), secret.end());
+  }
   return table;
 }
 
@@ -95,6 +101,22 @@ Child start(const MatchOptions& options, Table& table, Seat seat) {
   _exit(code);
 }
 
+/// Starts the relay. @return its process
+pid_t startRelay(Table& table) {
+  const pid_t process = fork();
+  if (process < 0) refuse("no process");
+  if (process > 0) return process;
+  try {
+    RelayOptions options;
+    options.word = table.relayWord;
+    options.tellEvery = 0;
+    runRelay(options, *table.relay);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "relay: %s\n", error.what());
+  }
+  _exit(1);
+}
+
 /// Reads what the children tell until all have ended or so many milliseconds have passed.
 void listen(std::vector<Child>& children, int most) {
   std::vector<pollfd> waiting;
@@ -119,6 +141,7 @@ void listen(std::vector<Child>& children, int most) {
 
 std::vector<PeerResult> playMatch(const MatchOptions& options) {
   Table table = setTable(options);
+  const pid_t relay = options.relay ? startRelay(table) : -1;
   std::vector<Child> children;
   for (Seat seat = 0; seat < options.players; ++seat) children.push_back(start(options, table, seat));
   // Peers end by themselves; whoever hangs is ended.
@@ -137,6 +160,11 @@ std::vector<PeerResult> playMatch(const MatchOptions& options) {
     }
     results.push_back(resultOf(child.told));
     results.back().ended &= WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  }
+  if (relay > 0) {
+    kill(relay, SIGKILL);
+    int status = 0;
+    waitpid(relay, &status, 0);
   }
   return results;
 }

@@ -24,6 +24,8 @@ struct MatchOptions {
   std::uint64_t seed = 1;
   /// Speed of the peers' clocks.
   std::uint32_t speed = 1;
+  /// True if all packets go through a relay, a process of its own.
+  bool relay = false;
   /// Seat whose world gets one bit changed, and after which tick; kNoSeat: nobody's.
   Seat flipSeat = kNoSeat;
   Tick flipTick = 0;

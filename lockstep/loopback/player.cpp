@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "loopback/player.h"
 
+#include "loopback/relay_process.h"
+
 // Frames of a game follow a clock; not in results: a session is told the time and keeps its steps the same.
 #include <chrono>
 
@@ -41,6 +43,7 @@ std::vector<Address> Player::othersOf(const Table& table, Seat seat) {
   for (std::size_t other = 0; other < table.sockets.size(); ++other) {
     if (other != seat) others.push_back(UdpTransport::address("127.0.0.1", table.sockets[other]->port()));
   }
+  if (table.relay != nullptr) others.push_back(UdpTransport::address("127.0.0.1", table.relay->port()));
   return others;
 }
 
@@ -49,23 +52,33 @@ Player::Player(const MatchOptions& options, Table& table, Seat seat)
       seat_(seat),
       udp_(*table.sockets[seat]),
       shaped_(udp_, othersOf(table, seat), options.link, options.seed * kMaxPlayers + seat),
-      sealed_(shaped_.transport(), table.keys[seat], table.match),
+      sealed_(shaped_.transport(), table.keys[seat],
+              table.relay == nullptr ? table.match : relayMatchKey(table.relayWord)),
       arena_(options),
       game_(arena_.arena.space(), ratio<Fixed>(1, 60), FlippedArena::apply, &arena_),
-      session_(
-          [&] {
-            for (Seat other = 0; other < options.players; ++other) {
-              const Address below = UdpTransport::address("127.0.0.1", table.sockets[other]->port());
-              addresses_.push_back(other == seat ? 0 : sealed_.addPeer(table.keys[other].publicKey, below));
-            }
-            return settingsOf();
-          }(),
-          game_.functions(), sealed_.transport()) {
+      session_((findOthers(table), settingsOf()), game_.functions(), transport()) {
   if (options.flipSeat == seat) {
     arena_.flipSeat = seat;
     arena_.flipTick = options.flipTick;
   }
   game_.record(result_.recording);
+}
+
+/// Lets in the others, or the relay in their place.
+void Player::findOthers(const Table& table) {
+  if (table.relay != nullptr) {
+    const Address below = UdpTransport::address("127.0.0.1", table.relay->port());
+    const Address relay = sealed_.addPeer(relayKeys(table.relayWord).publicKey, below);
+    relayed_ = std::make_unique<RelayTransport>(sealed_.transport(), relay, seat_);
+  }
+  for (Seat other = 0; other < options_.players; ++other) {
+    const Address below = UdpTransport::address("127.0.0.1", table.sockets[other]->port());
+    if (table.relay != nullptr) {
+      addresses_.push_back(RelayTransport::address(other));
+    } else {
+      addresses_.push_back(other == seat_ ? 0 : sealed_.addPeer(table.keys[other].publicKey, below));
+    }
+  }
 }
 
 SessionSettings Player::settingsOf() {
@@ -123,6 +136,7 @@ PeerResult Player::play() {
     } else {
       session_.poll(now);
     }
+    if (relayed_ != nullptr) relayed_->update(now);
     notice();
     udp_.wait(1);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <samestep/relay.h>
 #include <samestep/sealed_transport.h>
 #include <samestep/space_game.h>
 #include <samestep/udp_transport.h>
@@ -31,6 +32,9 @@ struct Table {
   std::vector<std::unique_ptr<UdpTransport>> sockets;
   std::vector<KeyPair> keys;
   MatchKey match;
+  /// Socket of the relay, or null, and the word that it shares with the players.
+  std::unique_ptr<UdpTransport> relay;
+  std::string relayWord;
 };
 
 /// One peer: a bot plays until the match is over.
@@ -43,6 +47,8 @@ class Player {
  private:
   static std::vector<Address> othersOf(const Table& table, Seat seat);
   SessionSettings settingsOf();
+  void findOthers(const Table& table);
+  Transport transport() { return relayed_ == nullptr ? sealed_.transport() : relayed_->transport(); }
   void turn(Time now);
   void notice();
   bool over() const;
@@ -53,6 +59,7 @@ class Player {
   ShapedUdp shaped_;
   SealedTransport sealed_;
   std::vector<Address> addresses_;
+  std::unique_ptr<RelayTransport> relayed_;
   FlippedArena arena_;
   SpaceGame<Fixed> game_;
   Session session_;

@@ -15,9 +15,50 @@ namespace {
 constexpr Time kSecond = 1'000'000;
 /// Strangers' datagrams come from here.
 constexpr Address kNobody = kMaxPlayers;
-/// Address of a seat's peer once it has moved.
+/// Node of seat 0's peer once it has moved; the other seats follow.
 constexpr Address kElsewhere = kMaxPlayers + 1;
-constexpr std::uint32_t kNodes = 2 * kMaxPlayers + 1;
+constexpr std::uint32_t kNodes = kRelayNode + 1;
+constexpr Time kRelayEvery = 4000;
+
+/// Relay at a node of its own.
+class RelayNode {
+ public:
+  RelayNode(std::uint64_t match, Network& network) : network_(network), seal_(match, kRelayName) {}
+
+  void update(Time now) {
+    now_ = now;
+    relay_.update(now);
+  }
+  Time next() const { return now_ + kRelayEvery; }
+  const Relay& relay() const { return relay_; }
+
+ private:
+  Transport transport() {
+    return {this,
+            [](Address to, std::span<const std::uint8_t> bytes, void* data) {
+              auto& self = *static_cast<RelayNode*>(data);
+              std::array<std::uint8_t, kMaxDatagram> sealed;
+              self.seal_.close(bytes, sealed);
+              self.network_.send(kRelayNode, self.seal_.nodeOf(to),
+                                 std::span(sealed).first(bytes.size() + Seal::kBytes), self.now_);
+            },
+            [](Address& from, std::span<std::uint8_t> into, void* data) {
+              auto& self = *static_cast<RelayNode*>(data);
+              auto& box = self.network_.inbox(kRelayNode);
+              std::uint32_t size = 0;
+              while (size == 0 && !box.empty()) {
+                size = self.seal_.open(box.front(), from, into);
+                box.pop_front();
+              }
+              return size;
+            }};
+  }
+
+  Network& network_;
+  Seal seal_;
+  Time now_ = 0;
+  Relay relay_{transport()};
+};
 
 /// Something that happens once.
 struct Happening {
@@ -67,6 +108,7 @@ class Match {
   std::uint32_t seats_;
   SessionSettings common_;
   Seat liar_ = kNoSeat;
+  std::unique_ptr<RelayNode> relay_;
   std::vector<std::unique_ptr<Peer>> peers_;
   std::vector<Happening> plan_;
   Oracle oracle_;
@@ -99,6 +141,14 @@ void Match::shapeLinks() {
       }
     }
   }
+  for (Address node = 0; node < seats_; ++node) {
+    LinkProfile half = network_.profile(node, (node + 1) % seats_);
+    half.delay /= 2;
+    half.jitter /= 2;
+    for (const Address at : {node, node + kElsewhere}) {
+      network_.profile(at, kRelayNode) = network_.profile(kRelayNode, at) = half;
+    }
+  }
   // A peer that has moved has the same path as before.
   for (Address from = 0; from < seats_; ++from) {
     for (Address to = 0; to < seats_; ++to) {
@@ -118,8 +168,11 @@ void Match::addPeers() {
   common_.maxCommandBytes = 16;
   // Most games keep the usual one.
   if (random_.perMille(500)) common_.hashInterval = static_cast<std::uint16_t>(random_.within(1, 60));
-  for (Seat seat = 0; seat < seats_; ++seat) common_.addresses[seat] = seat;
-  // Nobody could say which of two lies.
+  for (Seat seat = 0; seat < seats_; ++seat) {
+    common_.addresses[seat] = options_.relay ? RelayTransport::address(seat) : seat;
+  }
+  if (options_.relay) relay_ = std::make_unique<RelayNode>(common_.match, network_);
+  // Two peers could not say who of them lies.
   if (has(kLie) && options_.peers > 2) liar_ = static_cast<Seat>(random_.below(options_.peers));
   for (Seat seat = 0; seat < options_.peers; ++seat) addPeer(settingsOf(seat, false), random_.below(200'000));
 }
@@ -139,6 +192,10 @@ SessionSettings Match::settingsOf(Seat seat, bool joins) {
 void Match::addPeer(const SessionSettings& settings, Time from) {
   peers_.push_back(std::make_unique<Peer>(settings, options_, network_, random_.next()));
   peers_.back()->stallUntil(from);
+  for (Seat other = 0; other < seats_; ++other) {
+    const Peer* there = other == settings.localSeat ? nullptr : peerAt(other);
+    if (there != nullptr) peers_.back()->seal().place(other, there->node());
+  }
   if (settings.localSeat == liar_) peers_.back()->lie();
   if (!has(kDrift)) return;
   peers_.back()->setDrift(static_cast<std::int32_t>(random_.within(0, 300)) - 150, random_.next() >> 24);
@@ -216,6 +273,13 @@ void Match::plant() {
 }
 
 void Match::partition(std::uint32_t seats, bool blocked) {
+  for (Address node = 0; node < seats_; ++node) {
+    if ((seats >> node & 1) == 0) continue;
+    for (const Address at : {node, node + kElsewhere}) {
+      network_.block(at, kRelayNode, blocked);
+      network_.block(kRelayNode, at, blocked);
+    }
+  }
   for (Address from = 0; from < seats_; ++from) {
     for (Address to = 0; to < seats_; ++to) {
       if ((seats >> from & 1) == (seats >> to & 1)) continue;
@@ -316,6 +380,12 @@ MatchReport Match::run() {
       if (peer->running() && (next == nullptr || peer->next() < next->next())) next = peer.get();
     }
     if (next == nullptr) break;
+    if (relay_ != nullptr && relay_->next() < next->next()) {
+      now = std::max(now, relay_->next());
+      network_.deliver(now);
+      relay_->update(now);
+      continue;
+    }
     now = std::max(now, next->next());
     if (planned < plan_.size() && plan_[planned].time <= now) {
       happen(plan_[planned++]);
@@ -332,7 +402,16 @@ MatchReport Match::run() {
   report.lost = network_.lost();
   report.spoilt = network_.spoilt();
   report.moved = moved_;
-  for (const auto& peer : peers_) report.forged += peer->seal().forged();
+  for (const auto& peer : peers_) {
+    report.forged += peer->seal().forged();
+    if (peer->relayed() == nullptr) continue;
+    report.upDatagrams += peer->relayed()->sentPackets();
+    report.up += peer->relayed()->sentBytes();
+  }
+  if (relay_ != nullptr) {
+    report.downDatagrams = relay_->relay().sentPackets();
+    report.down = relay_->relay().sentBytes();
+  }
   return report;
 }
 

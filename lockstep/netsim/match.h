@@ -54,6 +54,8 @@ struct MatchOptions {
   static constexpr std::uint32_t kBySeed = 0xffffffffu;
   std::uint32_t delay = kBySeed;
   std::uint32_t loss = kBySeed;
+  /// True if all packets go through a relay, half of the way from each.
+  bool relay = false;
 };
 
 struct MatchReport {
@@ -72,11 +74,11 @@ struct MatchReport {
   std::uint32_t dropped = 0;
   std::uint32_t left = 0;
   std::uint32_t joined = 0;    ///< Seats taken in the match, those taken again included.
-  std::uint32_t rejoined = 0;  ///< Number of them that were taken before.
+  std::uint32_t rejoined = 0;  ///< Seats among them that were taken before.
   std::uint32_t refused = 0;   ///< States that newcomers did not believe.
   std::uint32_t moved = 0;     ///< Peers that came to have another address.
   std::uint64_t forged = 0;    ///< Datagrams that were dropped for their seal.
-  std::uint64_t spoilt = 0;    ///< Number of them that were changed on the way.
+  std::uint64_t spoilt = 0;    ///< Datagrams that were changed on the way.
   std::uint64_t steps = 0;
   std::uint64_t rollbacks = 0;
   std::uint32_t deepest = 0;
@@ -84,6 +86,11 @@ struct MatchReport {
   std::uint64_t datagrams = 0;
   std::uint64_t lost = 0;
   std::uint64_t payload = 0;
+  /// Datagrams and payload that peers sent to the relay, and the relay to them.
+  std::uint64_t upDatagrams = 0;
+  std::uint64_t up = 0;
+  std::uint64_t downDatagrams = 0;
+  std::uint64_t down = 0;
   std::uint64_t milliseconds = 0;  ///< Virtual.
   /// Hash of everything that was certain: equal where runs are.
   std::uint64_t trace = 0;

@@ -36,7 +36,7 @@ struct LinkProfile {
   std::uint32_t queue = 0;
   /// Datagrams of more bytes travel in pieces, each of which may be lost.
   std::uint32_t piece = 576;
-  /// Share of datagrams of which a bit, the length or both are changed on the way.
+  /// Chance that a bit or the length of a datagram is changed on the way.
   std::uint32_t corrupt = 0;
 };
 

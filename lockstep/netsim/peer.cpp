@@ -86,6 +86,10 @@ Peer::Peer(const SessionSettings& settings, const MatchOptions& options, Network
     return size;
   };
   if (settings.joins) first_ = start_ = kNever;
+  if (options.relay) {
+    relayed_ = std::make_unique<RelayTransport>(transport, kRelayName, seat_);
+    transport = relayed_->transport();
+  }
   session_ = std::make_unique<Session>(settings, game, transport);
   slots_.resize(kSaveSlots + kKeepSlots);
 }
@@ -173,6 +177,7 @@ void Peer::frame(Time now, bool quiet) {
   std::uint8_t held[4];
   bytesOf(heldGiven_, held);
   session_->frame(local(now), held);
+  if (relayed_ != nullptr) relayed_->update(now);
   if (session_->state() == SessionState::running)
     certain_ = std::min(session_->confirmed(), session_->tick());
   for (SessionEvent event; session_->next(event);) {

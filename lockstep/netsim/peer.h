@@ -2,6 +2,7 @@
 // A peer of a simulated match: a session, a game, a clock and a player.
 #pragma once
 
+#include <samestep/relay.h>
 #include <samestep/session.h>
 
 #include <algorithm>
@@ -35,6 +36,8 @@ class Peer {
   Seat seat() const { return seat_; }
   Seal& seal() { return seal_; }
   const Seal& seal() const { return seal_; }
+  /// Line to the relay, or null.
+  const RelayTransport* relayed() const { return relayed_.get(); }
   /// Sends and receives at another node from now on.
   void moveTo(Address node) { node_ = node; }
   Address node() const { return node_; }
@@ -91,6 +94,7 @@ class Peer {
   Seal seal_;
   Random random_;
   std::unique_ptr<SimGame> game_;
+  std::unique_ptr<RelayTransport> relayed_;
   std::unique_ptr<Session> session_;
   Time sending_ = 0;
   Time next_ = 0;

@@ -13,16 +13,23 @@
 
 namespace samestep::netsim {
 
+/// Node of the relay, and its name.
+inline constexpr Address kRelayNode = 2 * kMaxPlayers + 1;
+inline constexpr Address kRelayName = kMaxPlayers + 1;
+
 class Seal {
  public:
   static constexpr std::uint32_t kBytes = 9;
   /// @param name  of this peer: its seat
   Seal(std::uint64_t match, Address name) : match_(match), name_(name) {
     for (Address other = 0; other < nodes_.size(); ++other) nodes_[other] = other;
+    nodes_[kRelayName] = kRelayNode;
   }
 
   /// Node at which a peer was heard last.
   Address nodeOf(Address name) const { return nodes_[name]; }
+  /// Tells where a peer is, as a lobby does.
+  void place(Address name, Address node) { nodes_[name] = node; }
   void close(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> into);
   /// @return the length of what was sealed, or 0 for a datagram to be dropped
   std::uint32_t open(const Datagram& datagram, Address& from, std::span<std::uint8_t> into);
@@ -38,9 +45,9 @@ class Seal {
  private:
   std::uint64_t match_;
   Address name_;
-  std::array<Address, kMaxPlayers + 1> nodes_{};
+  std::array<Address, kRelayName + 1> nodes_{};
   /// The highest number that each peer has used, by which an old datagram does not tell a new place.
-  std::array<std::uint32_t, kMaxPlayers + 1> numbers_{};
+  std::array<std::uint32_t, kRelayName + 1> numbers_{};
   std::uint32_t sent_ = 0;
   std::uint64_t forged_ = 0;
   bool broken_ = false;

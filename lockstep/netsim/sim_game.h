@@ -20,7 +20,7 @@ class SimGame {
   virtual void load(std::uint32_t slot) = 0;
   virtual void step(const TickInputs& inputs) = 0;
   virtual std::uint64_t hash() = 0;
-  /// Do what Game::write and Game::read do.
+  /// The next two are as Game::write and Game::read.
   virtual std::uint64_t write(std::uint32_t slot, std::span<std::uint8_t> into) = 0;
   virtual bool read(std::span<const std::uint8_t> bytes) = 0;
   /// Changes one bit of the state: a planted fault.

@@ -37,7 +37,7 @@ Frame Session::Impl::frame(std::span<const std::uint8_t> held) {
 
 /// Makes our inputs up to the one that is due, unless we have gone too far ahead of the others.
 void Session::Impl::produce(std::span<const std::uint8_t> held) {
-  // A peer that is let in later sends its first inputs at once.
+  // A newcomer sends its first inputs at once.
   const Tick start = starts[settings.localSeat];
   const Tick due = std::max(current, start) + settings.inputDelay;
   const Tick most = std::max(certain, start) + kMaxLead;

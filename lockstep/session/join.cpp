@@ -30,7 +30,7 @@ constexpr std::uint64_t kNewsWithin = 1'500'000;
 /// A player that only asks to be let in for so long has lost the match.
 constexpr std::uint64_t kLostAfter = 500'000;
 
-// These are the marks of a seat in a tick of the log.
+// These are flags of a seat in a tick of the log.
 constexpr std::uint8_t kPresent = 1;
 constexpr std::uint8_t kLast = 2;
 
@@ -365,7 +365,7 @@ void Session::Impl::receiveBlock(PacketReader& reader) {
                     length == std::min(kBlock, size - block * kBlock);
   if (!fits || tick == kNever) return bad();
   if (tick != joining.tick || joining.size != size) {
-    // The peer that serves has begun anew.
+    // The seat that serves has begun anew.
     if (block != 0) return;
     forgetState();
     joining.tick = tick;
@@ -387,7 +387,7 @@ void Session::Impl::forgetState() {
   joining.vouched.fill({});
 }
 
-/// Forgets what this seat sent: it is not to be believed.
+/// Marks a seat as not to be believed.
 void Session::Impl::distrust(Seat seat) {
   tell({SessionEvent::Kind::lied, seat, 0, joining.tick});
   joining.liars |= bit(seat);
@@ -429,7 +429,7 @@ void Session::Impl::receiveLog(PacketReader& reader) {
   const std::span<const std::uint8_t> piece = reader.bytes(length);
   if (!reader.good() || length > kMaxPacket) return bad();
   if (!joining.loaded || tick != joining.tick || from != joining.logged) return;
-  // The tick asked for is never far ahead of what is stepped.
+  // The log that is asked for is never far ahead of the steps.
   if (joining.parsed > current + InputStream::kCapacity / 2) return;
   joining.log.insert(joining.log.end(), piece.begin(), piece.end());
   joining.logged += length;
@@ -477,7 +477,7 @@ bool Session::Impl::readTick(PacketReader& reader, Tick tick) {
 void Session::Impl::takeLogged(Seat seat, Tick tick, bool present, const InputEntry& entry) {
   InputStream& stream = streams[seat];
   if (state != SessionState::joining) {
-    // Decisions tell who plays; inputs may have come from their players as well.
+    // Decisions say who plays; inputs may have come from their players as well.
     if (!present || tick != stream.end() || tick >= inputLimit(seat)) return;
     if (!stream.append(entry)) wrong = std::min(wrong, tick);
     return takeControls(seat);
@@ -532,7 +532,7 @@ void Session::Impl::receiveAdmission(Seat seat, PacketReader& reader) {
   tell({SessionEvent::Kind::started});
 }
 
-/// Asks, as one who was let in, for what it still lacks from who has served it, until that has come so far.
+/// Asks the seat that has served us for what is still lacking, until we have come so far.
 void Session::Impl::fetchRest() {
   if (joining.from == kNoSeat || certain > starts[settings.localSeat] + kJoinLead) return;
   if (since(now, joining.fetchedAt) < kFetchEvery) return;

@@ -104,7 +104,7 @@ void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
     tell({SessionEvent::Kind::refused, seat, why});
     return finish(EndReason::refused);
   }
-  // The peer that was let in may be the only one left who can say so.
+  // A newcomer that was let in may be the only one left who can say so.
   const bool decided = type == Packet::commit && newcomers[seat].heard && state == SessionState::running;
   if (!link.heard && !decided) return;
   if (state == SessionState::joining) return receiveAsNewcomer(seat, type, reader);
@@ -117,7 +117,7 @@ void Session::Impl::receive(Address from, std::span<const std::uint8_t> bytes) {
   if (type == Packet::commit) return receiveCommit(seat, reader);
   // Inputs that the seat gave before it was dropped have their place in the decision.
   if (ends[seat] != kNever && (change.voters() & bit(seat)) == 0) return;
-  // A peer that has just been let in may ask for what it lacks.
+  // A newcomer that has just been let in may ask for what it lacks.
   if (type == Packet::fetch) return receiveFetch(seat, reader);
   if (type == Packet::log && seat == joining.from) return receiveLog(reader);
   link.lastHeard = now;
@@ -150,7 +150,7 @@ void Session::Impl::receiveFrom(Seat seat, Packet type, PacketReader& reader) {
     case Packet::answer:
       return receiveAnswer(seat, reader);
     case Packet::block:
-      // The block is of a state that is no more needed.
+      // The state that it belongs to is no more needed.
       return;
     default:
       return bad();

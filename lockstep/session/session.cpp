@@ -115,7 +115,7 @@ void requireOutside(bool inCall) {
       !inCall, "A session is changed from within a function of its own game or transport.");
 }
 
-/// Mark of a call: it lives while frame or poll is under way.
+/// Marks that frame or poll is under way.
 class InCall {
  public:
   explicit InCall(bool& inCall) : inCall_(inCall) {

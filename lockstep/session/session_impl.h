@@ -52,7 +52,7 @@ inline constexpr std::uint32_t kKeptHashes = 16;
 inline constexpr std::uint32_t kKeptEvents = 64;
 inline constexpr std::uint32_t kKeptCommands = 32;
 
-// This is a bit of a hello.
+// These are flags of a hello.
 inline constexpr std::uint8_t kHearsYou = 1;
 inline constexpr std::uint8_t kWantsToJoin = 2;
 
@@ -131,7 +131,7 @@ struct Newcomer {
   std::uint64_t lastHeard = 0;
 };
 
-/// Progress of what this peer sends a newcomer.
+/// State and inputs that this peer sends a newcomer.
 struct Serving {
   Seat seat = kNoSeat;
   Tick tick = kNever;  ///< Tick of the state.
@@ -145,23 +145,23 @@ struct Serving {
   std::uint64_t lastAnswered = 0;
 };
 
-/// Progress of what this peer, as a newcomer, has got.
+/// State and inputs that this peer, as a newcomer, has got.
 struct Joining {
   Seat from = kNoSeat;
   Tick tick = kNever;        ///< Tick of the state.
-  std::uint32_t size = 0;    ///< Size of the state, as announced, bytes.
+  std::uint32_t size = 0;    ///< Bytes of the state, as announced.
   std::uint32_t blocks = 0;  ///< That have come, in their order.
   std::vector<std::uint8_t> state;
   bool read = false;    ///< It is in the game, and is
   bool loaded = false;  ///< what most others have.
   std::uint64_t hash = 0;
   std::array<KeptHash, kMaxPlayers> vouched;
-  std::vector<std::uint8_t> log;  ///< Log of which no whole tick has come yet.
+  std::vector<std::uint8_t> log;  ///< Bytes of the log of which no whole tick has come yet.
   std::uint32_t logged = 0;       ///< Bytes of the log that have come.
   Tick parsed = 0;                ///< The tick after the last one of the log.
   SeatMask liars = 0;
   std::array<std::uint32_t, kMaxPlayers> numbers{};  ///< Number of the view that each tells.
-  std::uint64_t since = 0;                           ///< Time at which something new came last.
+  std::uint64_t since = 0;                           ///< Time when something new came last.
   std::uint64_t helloAt = 0;
   std::uint64_t fetchedAt = 0;
   std::uint64_t vouchedAt = 0;
@@ -323,8 +323,8 @@ struct Session::Impl {
   EndReason reason = EndReason::none;
   bool paused = false;
   bool leaving = false;
-  bool inCall = false;       ///< True within frame or poll.
-  Seat seats;                ///< Number of seats there may be.
+  bool inCall = false;       ///< A call of frame or poll is under way.
+  Seat seats;                ///< Number of seats that there may be.
   std::uint64_t endsAt = 0;  ///< When a leaver stops answering; 0: is not leaving.
 
   std::vector<lockstep::InputStream> streams;

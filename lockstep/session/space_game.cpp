@@ -22,7 +22,7 @@ using lockstep::mix;
 
 namespace {
 
-/// Name that values of an OwnState are told by.
+/// Object that values of an OwnState are told as.
 constexpr const char* kOwnState = "own state";
 constexpr std::uint64_t kOwnValue = 0x6f776e;
 
@@ -89,7 +89,7 @@ struct SpaceGame<S>::Impl {
     return true;
   }
 
-  /// Bytes of the OwnState that were saved; none where it does not write any.
+  /// Bytes of the OwnState that was saved; none where it does not write any.
   std::vector<std::uint8_t> ownBytes(std::uint32_t slot) const {
     if (own.write == nullptr) return {};
     std::vector<std::uint8_t> bytes(own.write(slot, {}, own.data));
@@ -163,7 +163,7 @@ struct SpaceGame<S>::Impl {
       require<Fault::MalformedBytes>(own.read(beside, own.data),
                                      "These bytes are not what the game keeps beside its Space.");
     }
-    // A recording of the world before is not of this match.
+    // The recording of the world before is not of this match.
     const bool records = recorder.has_value();
     recorder.reset();
     space.adopt(std::move(state));
@@ -180,7 +180,7 @@ struct SpaceGame<S>::Impl {
   OwnState own;
   std::array<SavedSpace<S>, kSaveSlots + kKeepSlots> saved;
   std::optional<Recorder<S>> recorder;
-  std::vector<std::uint8_t>* recording = nullptr;  ///< Recording, of which ours begins at recordingStart.
+  std::vector<std::uint8_t>* recording = nullptr;  ///< Bytes of which ours begin at recordingStart.
   std::size_t recordingStart = 0;
   Tick recordedFrom = 0;
   bool recordsFromNext = false;

@@ -71,7 +71,7 @@ class ViewChange {
   void propose(Seat self, SeatMask stay, SeatMask dropped, SeatMask joined = 0, Tick start = 0);
   std::uint32_t ballot() const { return ballot_; }
   SeatMask dropped() const { return dropped_; }
-  /// Seats that the ballot asked for, before it had to take up an earlier one.
+  /// Newcomers whom the ballot asked for, before it had to take up an earlier one.
   SeatMask joined() const { return joined_; }
   Tick start() const { return start_; }
   bool proposing() const { return ballot_ != 0; }

@@ -53,6 +53,7 @@ void addNetsim(CLI::App& app, int& result);
 void addMatch(CLI::App& app, int& result);
 /// Nothing where the build is without cpp-httplib.
 void addView(CLI::App& app, int& result);
+void addRelay(CLI::App& app, int& result);
 
 /// Adds --scalar with the scalars of this build.
 void addScalarOption(CLI::App& app, std::string& scalar);

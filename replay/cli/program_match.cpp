@@ -133,6 +133,7 @@ void addMatch(CLI::App& app, int& result) {
       ->check(CLI::Range(1u, 16u))
       ->capture_default_str();
   word->add_option("--seed", match.seed, "Of the bots and of what is lost")->capture_default_str();
+  word->add_flag("--relay", match.relay, "All packets go through a relay, one process more");
   word->add_option("-o,--output", options->folder, "A folder for what each peer has recorded");
   // This is there to see a desync: one bit of SEAT is changed at TICK.
   word->add_option("--flip", options->flip)->group("");

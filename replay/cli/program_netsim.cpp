@@ -24,6 +24,7 @@ struct Options {
   bool shrinks = true;
   std::uint32_t delay = MatchOptions::kBySeed;
   std::uint32_t loss = MatchOptions::kBySeed;
+  bool relay = false;
 };
 
 struct Range {
@@ -72,6 +73,7 @@ std::string commandOf(const MatchOptions& options, const Options& asked) {
   if (asked.game != "arena") text += " --game " + asked.game;
   if (asked.delay != MatchOptions::kBySeed) text += " --delay " + std::to_string(asked.delay);
   if (asked.loss != MatchOptions::kBySeed) text += " --loss " + std::to_string(asked.loss);
+  if (asked.relay) text += " --relay";
   if (asked.planted != "none") text += " --plant " + asked.planted;
   return text;
 }
@@ -112,6 +114,10 @@ struct Sum {
     all.rejoined += report.rejoined;
     all.refused += report.refused;
     all.moved += report.moved;
+    all.up += report.up;
+    all.down += report.down;
+    all.upDatagrams += report.upDatagrams;
+    all.downDatagrams += report.downDatagrams;
     all.forged += report.forged;
     all.spoilt += report.spoilt;
     all.milliseconds += report.milliseconds;
@@ -127,14 +133,22 @@ struct Sum {
                 number(all.rollbacks), all.deepest, number(all.waited));
     std::printf("players: %u dropped, %u left, %u came to a match under way (%u of them back), %u moved\n",
                 all.dropped, all.left, all.joined, all.rejoined, all.moved);
+    std::printf("datagrams: %llu, %llu lost, %llu changed on the way, %llu dropped for their seal\n",
+                number(all.datagrams), number(all.lost), number(all.spoilt), number(all.forged));
     // IP and UDP take 28 bytes of each, and a seal 21.
-    const std::uint64_t bytes = all.payload + (28 + 21) * all.datagrams;
-    std::printf(
-        "datagrams: %llu, %llu lost, %llu changed on the way, %llu dropped for their seal; %llu bytes a "
-        "second "
-        "sent by each peer, with seals, IP and UDP\n",
-        number(all.datagrams), number(all.lost), number(all.spoilt), number(all.forged),
-        number(bytes * 1000 / std::max<std::uint64_t>(peerMilliseconds, 1)));
+    const auto each = [&](std::uint64_t payload, std::uint64_t datagrams) {
+      return number((payload + (28 + 21) * datagrams) * 1000 / std::max<std::uint64_t>(peerMilliseconds, 1));
+    };
+    if (all.up == 0) {
+      std::printf("traffic: %llu bytes a second sent by each peer, with seals, IP and UDP\n",
+                  each(all.payload, all.datagrams));
+    } else {
+      std::printf(
+          "traffic: %llu bytes a second sent to the relay by each peer, %llu sent to each, with seals, IP "
+          "and "
+          "UDP\n",
+          each(all.up, all.upDatagrams), each(all.down, all.downDatagrams));
+    }
     std::printf("liars: %u states were sent to newcomers that are not the match's, and not believed\n",
                 all.refused);
     std::printf("trace %s\n", hex(all.trace).c_str());
@@ -161,6 +175,7 @@ int run(const Options& asked) {
     options.faults = faults;
     options.delay = asked.delay;
     options.loss = asked.loss;
+    options.relay = asked.relay;
     options.planted = plantedNamed(asked.planted);
     options.makeGame = asked.game == "arena" ? netsim::makeArenaGame : netsim::makeIntegerGame;
     const MatchReport report = netsim::runMatch(options);
@@ -199,6 +214,7 @@ void addNetsim(CLI::App& app, int& result) {
       ->check(CLI::Range(0u, 1000u));
   word->add_option("--loss", options->loss, "Of a hundred datagrams, in place of what the seed has")
       ->check(CLI::Range(0u, 90u));
+  word->add_flag("--relay", options->relay, "All packets go through a relay");
   word->add_option("--game", options->game, "What is played: physics, or a game whose state is one integer")
       ->check(CLI::IsMember({"arena", "integer"}))
       ->capture_default_str();

@@ -59,6 +59,7 @@ int samestep::runProgram(int argc, char** argv, const Wirings& wirings) {
   addNetsim(app, result);
   addMatch(app, result);
   addView(app, result);
+  addRelay(app, result);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -106,7 +106,7 @@ TEST(JoinTest, WhoCrashedComesBackIntoItsSeat) {
   Table table(3, common());
   table.play(100);
   table.sessions[2].reset();
-  // A peer that is gone is dropped after three seconds; it may begin anew before that.
+  // A player that is gone is dropped after three seconds; it may begin anew before that.
   table.play(90);
   Newcomer back(table, common(), 2);
   back.play(600);

@@ -65,6 +65,33 @@ TEST(NetsimTest, OneBitOfOneBodyIsCaughtAndNamedByEveryPeer) {
   for (const std::string& finding : report.findings) EXPECT_THAT(finding, ::testing::HasSubstr("body 1, "));
 }
 
+TEST(NetsimTest, PeersOfARelayStayTheSame) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    MatchOptions relayed = options(seed, kLoss | kCrash | kRejoin | kJoin | kMove | kCorrupt, 300);
+    relayed.relay = true;
+    EXPECT_EQ(all(runMatch(relayed)), "") << "seed " << seed;
+  }
+}
+
+TEST(NetsimTest, SixteenPlayersOfARelaySendAndReceiveTwelveKilobytesASecond) {
+  MatchOptions relayed = options(1, 0, 900);
+  relayed.peers = kMaxPlayers;
+  relayed.relay = true;
+  relayed.delay = 50;
+  relayed.loss = 5;
+
+  const MatchReport report = runMatch(relayed);
+
+  EXPECT_EQ(all(report), "");
+  // IP and UDP take 28 bytes of each datagram, and a seal 21.
+  const auto each = [&](std::uint64_t bytes, std::uint64_t datagrams) {
+    return (bytes + 49 * datagrams) * 1000 / (report.milliseconds * report.peers);
+  };
+  EXPECT_LE(each(report.up, report.upDatagrams), 12'000u);
+  EXPECT_LE(each(report.down, report.downDatagrams), 12'000u);
+  EXPECT_GT(each(report.down, report.downDatagrams), 2'000u);
+}
+
 TEST(NetsimTest, AMatchIsTheSameEachTime) {
   const MatchReport first = runMatch(options(7, kAllFaults));
   const MatchReport again = runMatch(options(7, kAllFaults));

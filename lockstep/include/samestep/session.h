@@ -205,8 +205,8 @@ class Session {
   void setWindow(std::uint8_t ticks);
   void setRunAhead(std::uint8_t ticks);
   void setSaving(Saving saving);
-  /// Sets who may take a seat that is free, for instance a player that comes back by another address; ~0 for
-  /// whoever the transport lets in. A seat that is taken keeps its address.
+  /// Sets who may take a seat that is free, for instance a player that comes back by another address; ~0
+  /// for whoever the transport lets in. A seat that is taken keeps its address.
   /// @throws ValueOutOfRange for a seat that is not there
   void setAddress(Seat seat, Address address);
   std::uint8_t inputDelay() const;
