@@ -294,7 +294,11 @@ void Islands<S>::eachEdge(const StepContext<S>& step, Visit&& visit) {
   step.state.joints.each([&](JointId, const Joint<S>& joint) {
     const Body<S>& a = step.state.bodies.valueAt(joint.bodyA.index);
     const Body<S>& b = step.state.bodies.valueAt(joint.bodyB.index);
-    const bool holds = (a.isDynamic() || b.isDynamic()) && !a.isSleeping() && !b.isSleeping();
+    // A body that a callback has roused in this step is in no island until the next one wakes it.
+    const auto takesPart = [](const Body<S>& body) {
+      return !body.isDynamic() || body.activity() == Activity::awake;
+    };
+    const bool holds = (a.isDynamic() || b.isDynamic()) && takesPart(a) && takesPart(b);
     if (holds) visit(joint.bodyA.index, joint.bodyB.index, true);
   });
 }
