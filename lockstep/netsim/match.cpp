@@ -330,7 +330,12 @@ void Match::happen(const Happening& happening) {
       return peer.pauseUntil(happening.time + happening.lasts);
     case Happening::Kind::move:
       moved_ += peer.running() && peer.node() == peer.seat() ? 1 : 0;
-      return peer.moveTo(peer.seat() + kElsewhere);
+      peer.moveTo(peer.seat() + kElsewhere);
+      // Nobody but the lobby can tell a newcomer that nobody has heard yet.
+      for (const auto& other : peers_) {
+        if (other->session().state() == SessionState::joining) other->seal().place(peer.seat(), peer.node());
+      }
+      return;
     case Happening::Kind::rejoin:
       if (!peer.running() && peer.ended() != EndReason::left) {
         addPeer(settingsOf(happening.seat, true), happening.time);

@@ -4,11 +4,8 @@
 #include <cstdlib>
 #include <new>
 
-#include <samestep/space_game.h>
-
 #include <gtest/gtest.h>
 
-#include "arena/arena.h"
 #include "lockstep/session_pair.h"
 
 namespace {
@@ -57,47 +54,6 @@ TEST(SessionAllocationTest, AMatchWithRollbacksCommandsAndALeaverTakesNoMemory) 
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(table.sessions[0]->stats().rollbacks, 20u);
   EXPECT_EQ(table.sessions[3]->endReason(), EndReason::left);
-}
-
-/// A peer of a match of the arena.
-struct ArenaPeer {
-  ArenaPeer(Post& post, Seat seat, Seat players) {
-    SessionSettings settings;
-    settings.players = players;
-    settings.localSeat = seat;
-    for (Seat other = 0; other < players; ++other) settings.addresses[other] = other;
-    settings.maxHeldBytes = 1;
-    game.describe(settings);
-    session = std::make_unique<Session>(settings, game.functions(), post.of(seat));
-  }
-
-  arena::Arena<Fixed> arena{4, 12};
-  SpaceGame<Fixed> game{arena.space(), ratio<Fixed>(1, 60), arena::Arena<Fixed>::applyInputs, &arena};
-  std::unique_ptr<Session> session;
-};
-
-TEST(SessionAllocationTest, AMatchOfPhysicsTakesNoMemoryOnceItsWorldsHaveGrown) {
-  const auto post = std::make_unique<Post>();
-  std::vector<std::unique_ptr<ArenaPeer>> peers;
-  for (Seat seat = 0; seat < 4; ++seat) peers.push_back(std::make_unique<ArenaPeer>(*post, seat, Seat{4}));
-  std::uint64_t now = 0;
-  const auto play = [&](int frames) {
-    for (int i = 0; i < frames; ++i) {
-      now += 16'667;
-      post->cut = i % 20 > 14;
-      for (Seat seat = 0; seat < 4; ++seat) {
-        Session& session = *peers[seat]->session;
-        const std::uint8_t held = arena::botButtons(1, seat, session.tick());
-        session.frame(now, {&held, 1});
-      }
-    }
-  };
-  play(1200);
-  const long before = allocations;
-  play(600);
-
-  EXPECT_EQ(allocations - before, 0);
-  EXPECT_GT(peers[0]->session->stats().rollbacks, 50u);
 }
 
 }  // namespace
