@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What is at rest falls asleep, and whatever could move it wakes it.
+#include <samestep/joint.h>
 #include <samestep/space.h>
 
 #include <algorithm>
@@ -477,6 +478,32 @@ TYPED_TEST(SleepTest, NothingSleepsInTheAir) {
         for (const BodyId id : all) ASSERT_FALSE(space.body(id).isSleeping()) << i;
       }
     }
+  }
+}
+
+// A slack rope holds nothing; once it hangs in it, the body sleeps.
+TYPED_TEST(SleepTest, OnARopeABodySleepsWhenTheRopeHoldsIt) {
+  using S = TypeParam;
+  for (const SolverKind solver : kBothSolvers) {
+    Space<S> space;
+    space.setSolver(solver);
+    space.setGravity({S(0), -ratio<S>(1, 50)});
+    space.setSleepTimeThreshold(ratio<S>(1, 4));
+    space.setIdleSpeedThreshold(ratio<S>(1, 4));
+    const BodyId disc = bodyOf(space, addDisc<S>(space, {}, ratio<S>(1, 2), S(1), {S(0), ratio<S>(1, 8)}));
+    space.add(ropeJoint<S>(space.staticBody(), disc, {}, {}, S(0), S(1)));
+    double lowest = 0;
+    for (int i = 0; i < 64 * 24; ++i) {
+      space.step(kTick<S>);
+      const Body<S>& body = std::as_const(space).body(disc);
+      lowest = std::min(lowest, double(body.position().y));
+      ASSERT_FALSE(body.isSleeping() && double(body.position().y) > -0.95) << "in step " << i;
+    }
+    EXPECT_LT(lowest, -0.5);
+    space.setGravity({S(0), S(-10)});
+    for (int i = 0; i < 64 * 20; ++i) space.step(kTick<S>);
+    EXPECT_TRUE(std::as_const(space).body(disc).isSleeping());
+    EXPECT_NEAR(double(std::as_const(space).body(disc).position().y), -1.0, 0.05);
   }
 }
 

@@ -299,7 +299,9 @@ void Islands<S>::eachEdge(const StepContext<S>& step, Visit&& visit) {
       return !body.isDynamic() || body.activity() == Activity::awake;
     };
     const bool holds = (a.isDynamic() || b.isDynamic()) && takesPart(a) && takesPart(b);
-    if (holds) visit(joint.bodyA.index, joint.bodyB.index, true);
+    // A slack rope holds nothing.
+    const bool pulls = joint.force != Vector<S>() || joint.torque != S(0);
+    if (holds) visit(joint.bodyA.index, joint.bodyB.index, pulls);
   });
 }
 
