@@ -2,7 +2,8 @@
 include(CMakePackageConfigHelpers)
 
 set(libraries samestep samestep_fixed samestep_flags)
-foreach(optional samestep_recording samestep_replay samestep_lockstep samestep_transport samestep_c samestep_c_shared)
+foreach(optional samestep_recording samestep_replay samestep_lockstep samestep_transport samestep_c samestep_c_shared
+    samestep_cli samestep_study samestep_netsim samestep_arena samestep_loopback)
   if(TARGET ${optional})
     list(APPEND libraries ${optional})
   endif()

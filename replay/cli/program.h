@@ -39,12 +39,15 @@ class Unusable : public std::exception {
 void addScenes(CLI::App& app, int& result);
 void addHash(CLI::App& app, int& result);
 void addRecord(CLI::App& app, int& result);
-void addVerify(CLI::App& app, const Wirings& wirings, int& result);
+void addVerify(CLI::App& app, Wirings& wirings, int& result);
 void addShards(CLI::App& app, int& result);
 void addMerge(CLI::App& app, int& result);
 void addInfo(CLI::App& app, int& result);
-void addDiff(CLI::App& app, const Wirings& wirings, int& result);
-void addDraw(CLI::App& app, const Wirings& wirings, int& result);
+void addDiff(CLI::App& app, Wirings& wirings, int& result);
+/// Answers for a recording that is on this machine, to a diff on another one.
+void addAnswer(CLI::App& app, Wirings& wirings, int& result);
+void addDraw(CLI::App& app, Wirings& wirings, int& result);
+void addFilm(CLI::App& app, Wirings& wirings, int& result);
 void addChart(CLI::App& app, int& result);
 void addEnvelope(CLI::App& app, int& result);
 void addTune(CLI::App& app, int& result);
@@ -54,6 +57,10 @@ void addMatch(CLI::App& app, int& result);
 /// Nothing where the build is without cpp-httplib.
 void addView(CLI::App& app, int& result);
 void addRelay(CLI::App& app, int& result);
+
+/// Adds --game, which puts the wirings of a game's library in place of these.
+/// @throws Unusable, when it is read, for what is no such library
+void addGameOption(CLI::App& app, Wirings& wirings);
 
 /// Adds --scalar with the scalars of this build.
 void addScalarOption(CLI::App& app, std::string& scalar);

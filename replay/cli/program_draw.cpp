@@ -89,7 +89,7 @@ int draw(const Options& options, const Wirings& wirings) {
 
 }  // namespace
 
-void addDraw(CLI::App& app, const Wirings& wirings, int& result) {
+void addDraw(CLI::App& app, Wirings& wirings, int& result) {
   CLI::App* word = app.add_subcommand("draw", "Draw one tick of a scene or recording as an SVG picture");
   auto options = std::make_shared<Options>();
   word->add_option("SCENE|FILE", options->source, "A scene (name or path) or a recording")->required();
@@ -98,6 +98,7 @@ void addDraw(CLI::App& app, const Wirings& wirings, int& result) {
       ->required();
   word->add_option("-o,--output", options->file, "The SVG file to write")->required();
   addScalarOption(*word, options->scalar);
+  addGameOption(*word, wirings);
   word->callback([options, word, &wirings, &result] {
     options->scalarGiven = word->count("--scalar") > 0;
     result = draw(*options, wirings);

@@ -131,7 +131,8 @@ struct Applier {
     return {};
   }
   BodyId operator()(const UserInput& c) const {
-    require<Fault::MissingCallback>(wiring.applyInput != nullptr);
+    require<Fault::MissingCallback>(wiring.applyInput != nullptr, "an input of ", c.bytes.size(),
+                                    " bytes: no function of the game's applies inputs");
     wiring.applyInput(space, c.bytes, wiring.data);
     return {};
   }

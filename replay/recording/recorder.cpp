@@ -263,7 +263,8 @@ template <Scalar S>
 void Recorder<S>::input(std::span<const std::uint8_t> bytes) {
   requireRecordableInput(bytes.size());
   impl_->record(CommandKind::userInput, bytes, [&] {
-    require<Fault::MissingCallback>(impl_->wiring.applyInput != nullptr);
+    require<Fault::MissingCallback>(impl_->wiring.applyInput != nullptr, "an input of ", bytes.size(),
+                                    " bytes: no function of the game's applies inputs");
     impl_->wiring.applyInput(impl_->space, bytes, impl_->wiring.data);
     return BodyId{};
   });

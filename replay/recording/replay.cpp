@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <samestep/replay.h>
 
+#include <string>
+
+#include <samestep/state_diff.h>
+
 #include "base/require_ieee.h"
 
 namespace samestep {
@@ -54,6 +58,30 @@ void Replay<S>::act(Action&& action) {
 #endif
 }
 
+/// Applies the command read last; of a game's own input that is refused, an error tells the bytes.
+template <Scalar S>
+void Replay<S>::applyNow() {
+  const Command<S>& command = reader_.command();
+#if defined(__cpp_exceptions)
+  const auto* input = std::get_if<UserInput>(&command);
+  if (input != nullptr && wiring_.applyInput != nullptr) {
+    try {
+      applyCommand(space_, command, wiring_);
+      return;
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const MissingCallback&) {
+      throw;
+    } catch (const Error& error) {
+      const std::string words = "before tick " + std::to_string(tick_ + 1) + " the game refuses its input (" +
+                                error.what() + "); " + describe(command);
+      failFormat(reader_.offset(), words.c_str());
+    }
+  }
+#endif
+  applyCommand(space_, command, wiring_);
+}
+
 template <Scalar S>
 bool Replay<S>::applyCommands() {
   if (applied_ || ended_) return !ended_;
@@ -71,7 +99,7 @@ bool Replay<S>::applyCommands() {
     }
     require<Fault::Interrupted>(!interrupt_.isWanted());
     // Recorded commands were accepted once.
-    act([&] { applyCommand(space_, reader_.command(), wiring_); });
+    act([&] { applyNow(); });
     if (space_.state().bodies.slots() > limits_.bodies || space_.state().shapes.slots() > limits_.shapes) {
       failFormat(reader_.offset(), "more bodies or shapes than allowed");
     }

@@ -325,6 +325,15 @@ std::vector<std::uint64_t> valueHashes(const WorldState<S>& world) {
 }
 
 template <Scalar S>
+std::vector<WorldValue> valuesOf(const WorldState<S>& world) {
+  std::vector<WorldValue> values;
+  eachValue(world, [&](const std::string& object, const Field& field) {
+    values.push_back({object, field.name, field.text});
+  });
+  return values;
+}
+
+template <Scalar S>
 WorldValue valueAt(const WorldState<S>& world, std::uint32_t index) {
   WorldValue found;
   std::uint32_t passed = 0;
@@ -343,6 +352,7 @@ std::string describe(const Command<S>& command) {
   template std::vector<FieldDifference> differences<S>(const WorldState<S>&, const WorldState<S>&, \
                                                        std::uint32_t);                             \
   template std::vector<std::uint64_t> valueHashes<S>(const WorldState<S>&);                        \
+  template std::vector<WorldValue> valuesOf<S>(const WorldState<S>&);                              \
   template WorldValue valueAt<S>(const WorldState<S>&, std::uint32_t);                             \
   template std::string describe<S>(const Command<S>&);
 #include <samestep/each_scalar.h>

@@ -2,19 +2,10 @@
 #include <samestep/draw.h>
 
 #include "base/require_ieee.h"
+#include "scenes/paint.h"
 
 namespace samestep {
 namespace {
-
-struct Paint {
-  const char* fill;
-  const char* line;
-};
-constexpr Paint kStatic{"#b9bec6", "#8d949f"};
-constexpr Paint kKinematic{"#5fb3a8", "#2f7d73"};
-constexpr Paint kDynamic[] = {{"#f2c879", "#b98a2f"}, {"#9cc5e8", "#4f86b5"}, {"#e6a1a0", "#b3605f"},
-                              {"#b5d6a0", "#6f9c53"}, {"#cdb3e0", "#8a68a6"}, {"#f0b48a", "#b97643"},
-                              {"#a9d9d2", "#58998f"}, {"#d8cfa0", "#968a4c"}};
 
 /// Writes the picture. Lengths are metres with y downwards, so that a pixel's size never matters.
 template <Scalar S>
@@ -62,20 +53,6 @@ class Artist {
   static std::string paint(const Paint& colours) {
     return std::string(" fill=\"") + colours.fill + "\" stroke=\"" + colours.line + "\"";
   }
-  static std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-      if (c == '<') {
-        safe += "&lt;";
-      } else if (c == '&') {
-        safe += "&amp;";
-      } else {
-        safe += c;
-      }
-    }
-    return safe;
-  }
-
   const Body<S>& bodyOf(const Shape<S>& shape) const { return space_.body(shape.body()); }
   BB<S> boxOf(const Shape<S>& shape) const { return boundingBox(shape, bodyOf(shape).transform()); }
 
@@ -122,7 +99,7 @@ class Artist {
     out_ += "<rect" + place("x", "y", {frame_.left, -top}) + attribute("width", width_) +
             attribute("height", header()) + " fill=\"#fcfbf8\"/>\n";
     out_ += "<text" + attribute("x", frame_.left + unit_ * S(12)) + attribute("y", top + unit_ * S(24)) +
-            attribute("font-size", unit_ * S(17)) + " fill=\"#333\">" + escaped(caption) + "</text>\n";
+            attribute("font-size", unit_ * S(17)) + " fill=\"#333\">" + escapedText(caption) + "</text>\n";
   }
 
   void layer(BodyType type) {
@@ -134,20 +111,13 @@ class Artist {
     out_ += "</g>\n";
   }
 
-  Paint paintOf(const Body<S>& body) const {
-    if (body.type() == BodyType::staticBody) return kStatic;
-    if (body.type() == BodyType::kinematicBody) return kKinematic;
-    return kDynamic[body.id().index % std::size(kDynamic)];
-  }
-
   void outline(const Shape<S>& shape) {
     const Transform<S> pose = bodyOf(shape).transform();
-    Paint colours = paintOf(bodyOf(shape));
+    Paint colours = paintOf(bodyOf(shape).type(), bodyOf(shape).id().index);
     std::string style;
     if (shape.sensor()) {
       style = " fill-opacity=\"0.25\" stroke-dasharray=\"" + number(unit_ * S(5)) + "\"";
-      colours.line = "#c2568a";
-      colours.fill = "#f0c6da";
+      colours = kSensor;
     }
     switch (shape.type()) {
       case ShapeType::circle:

@@ -347,6 +347,39 @@ TEST_F(ProgramTest, DiffNamesTickObjectFieldAndInput) {
   EXPECT_EQ(run("diff '" + file("a.rec") + "' '" + file("scene.json") + "'").code, 2);
 }
 
+TEST_F(ProgramTest, DiffTellsItAsDataWithContextAndByAnswers) {
+  const std::string scene =
+      R"({"samestep": 1, "bodies": [{"name": "a", "mass": 1, "moment": 1}], "inputs": "keys.csv"})";
+  write("scene.json", scene);
+  const std::string a = "'" + file("a.rec") + "'", b = "'" + file("b.rec") + "'";
+  write("keys.csv", "tick,body,do,x,y\n5,a,impulse,1,0\n");
+  ASSERT_EQ(run("record '" + file("scene.json") + "' --ticks 20 -o " + a).code, 0);
+  write("keys.csv", "tick,body,do,x,y\n5,a,impulse,1.5,0\n");
+  ASSERT_EQ(run("record '" + file("scene.json") + "' --ticks 20 -o " + b).code, 0);
+
+  const Outcome json = run("diff --json " + a + " " + b);
+  EXPECT_EQ(json.code, 1);
+  EXPECT_THAT(json.out,
+              HasSubstr("{\"same\":false,\"ticksA\":20,\"ticksB\":20,\"tick\":5,\"stage\":\"commands\""));
+  EXPECT_THAT(json.out, HasSubstr("{\"object\":\"body 1\",\"field\":\"velocity.x\",\"a\":\"1 ("));
+  EXPECT_THAT(json.out, HasSubstr("\"onlyB\":[\"impulse: body 1"));
+  EXPECT_EQ(std::count(json.out.begin(), json.out.end(), '\n'), 1);
+  EXPECT_THAT(run("diff --json " + a + " " + a).out, HasSubstr("{\"same\":true,"));
+  const Outcome context = run("diff --context 2 " + a + " " + b);
+  EXPECT_THAT(context.out, HasSubstr("A after tick 3\n"));
+  EXPECT_THAT(context.out, HasSubstr("B after tick 5\n    body 1, "));
+  EXPECT_THAT(context.out, HasSubstr("  impulse: body 1 (generation 1), impulse.x 1.5"));
+  // Each side with its own recording; only hashes between them.
+  const std::string answers = std::string(" --answers \"'") + SAMESTEP_PROGRAM + "' answer ";
+  const Outcome apart = run("diff " + a + answers + b + "\"");
+  EXPECT_EQ(apart.code, 1) << apart.error;
+  EXPECT_THAT(apart.out, HasSubstr("they differ first in tick 5, commands, body, body 1, velocity.x"));
+  EXPECT_THAT(apart.out, HasSubstr("\n    A: 1 ("));
+  EXPECT_THAT(run("diff " + a + answers + a + "\"").out, HasSubstr("the two are the same, by every hash"));
+  EXPECT_EQ(run("diff " + a + " --answers false").code, 2);
+  EXPECT_EQ(run("diff " + a).code, 2);
+}
+
 TEST_F(ProgramTest, DrawsScenesAndRecordings) {
   ASSERT_EQ(run("draw stack --tick 10 -o '" + file("scene.svg") + "'").code, 0);
   ASSERT_EQ(run("record stack --ticks 10 -o '" + file("a.rec") + "'").code, 0);
@@ -359,6 +392,23 @@ TEST_F(ProgramTest, DrawsScenesAndRecordings) {
   const auto withoutCaption = [](const std::string& text) { return text.substr(0, text.rfind("<text")); };
   EXPECT_EQ(withoutCaption(contents(file("recording.svg"))), withoutCaption(picture));
   EXPECT_EQ(run("draw '" + file("a.rec") + "' --tick 11 -o '" + file("late.svg") + "'").code, 2);
+}
+
+TEST_F(ProgramTest, FilmsArePicturesThatABrowserPlays) {
+  ASSERT_EQ(run("record stack --ticks 90 -o '" + file("a.rec") + "'").code, 0);
+  const std::string film = "film '" + file("a.rec") + "' ";
+  const Outcome outcome = run(film + "--from 30 --to 80 --follow 3 -o '" + file("a.svg") + "'");
+  EXPECT_EQ(outcome.code, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("ticks 30 to 80 of "));
+  EXPECT_THAT(contents(file("a.svg")), HasSubstr("<animateTransform "));
+  EXPECT_EQ(run(film + "-o '" + file("folder") + "'").code, 0);
+  EXPECT_THAT(contents(file("folder/index.html")), HasSubstr("000000.svg"));
+  EXPECT_THAT(contents(file("folder/000045.svg")), HasSubstr("tick 90</text>"));
+  EXPECT_EQ(run(film + "--follow 99 -o '" + file("b.svg") + "'").code, 2);
+  EXPECT_EQ(run(film + "--from 91 -o '" + file("b.svg") + "'").code, 2);
+  EXPECT_EQ(run(film + "--max-kilobytes 1 -o '" + file("b.svg") + "'").code, 2);
+  ASSERT_EQ(run("record stack --ticks 90 --scalar fixed --note a=b -o '" + file("b.rec") + "'").code, 0);
+  EXPECT_EQ(run(film + "'" + file("b.rec") + "' -o '" + file("b.svg") + "'").code, 0);
 }
 
 TEST_F(ProgramTest, ScenesAreFoundInTheFolderTheEnvironmentNames) {

@@ -198,6 +198,37 @@ TEST_F(VerifyBatchTest, ASampleOfFilesIsDrawnBySeed) {
   EXPECT_NE(drawn("1"), drawn("2"));
 }
 
+TEST_F(VerifyBatchTest, ARecordingOfAnotherRevisionIsJudgedByItsOwnProgram) {
+  record(2);
+  std::string old = contents(file("recordings/1"));
+  old[12] = 3;
+  write("recordings/1", old);
+  const Outcome alone = run("verify --json " + quoted("recordings"));
+  EXPECT_EQ(alone.code, 2);
+  EXPECT_THAT(alone.out, HasSubstr("\"verdict\":\"other revision\""));
+  EXPECT_THAT(alone.out, HasSubstr("\"revision\":3"));
+
+  std::filesystem::create_directory(file("programs"));
+  write("programs/samestep-3",
+        "#!/bin/sh\necho \"$@\" >&2\nwhile read -r name; do echo \"{\\\"file\\\":\\\"$name\\\","
+        "\\\"content\\\":\\\"0123456789abcdef\\\",\\\"verifier\\\":3,\\\"asked\\\":\\\"\\\","
+        "\\\"verdict\\\":\\\"verified\\\"}\"; done\n");
+  std::filesystem::permissions(file("programs/samestep-3"), std::filesystem::perms::owner_all);
+  const std::string with = "verify --max-bodies 99 --jobs 2 --with " + quoted("programs");
+  const Outcome both = run(with + " --json " + quoted("recordings"));
+  EXPECT_EQ(both.code, 0) << both.out << both.error;
+  EXPECT_THAT(both.out, HasSubstr("\"verifier\":3"));
+  EXPECT_THAT(both.error, HasSubstr("2 files: 2 verified"));
+  EXPECT_THAT(both.error, HasSubstr("verify - --json --jobs 2 --max-bodies 99"));
+  EXPECT_THAT(run(with + " " + quoted("recordings")).out,
+              HasSubstr("1: verified, by the program of revision 3"));
+  // One that says nothing leaves the verdict open.
+  write("programs/samestep-3", "#!/bin/sh\nexit 0\n");
+  const Outcome silent = run(with + " --json " + quoted("recordings"));
+  EXPECT_EQ(silent.code, 2);
+  EXPECT_THAT(silent.out, HasSubstr("says nothing of it"));
+}
+
 #ifdef SAMESTEP_CONFINED
 TEST_F(VerifyBatchTest, ProcessesThatVerifyHaveNoNetworkAndWriteNothing) {
   write("victim", "mine");

@@ -52,6 +52,7 @@ endif()
 
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${WORK}/build -G ${GENERATOR}
   -D CMAKE_BUILD_TYPE=Release -D EXAMPLE=${WORK}/example.cpp -D EXAMPLE_C=${WORK}/example.c
+  -D EXAMPLE_GAME=${SOURCE}/examples/game/verifier.cpp
   -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
   -D CMAKE_CXX_FLAGS=${FLAGS} -D CMAKE_CXX_FLAGS_RELEASE=${FLAGS_RELEASE} ${options})
 run(${CMAKE_COMMAND} --build ${WORK}/build --target example)
@@ -60,6 +61,8 @@ if(NOT printed STREQUAL expected)
   message(FATAL_ERROR "README.md says the example prints\n${expected}\nit prints\n${printed}")
 endif()
 if(KIND STREQUAL installed)
+  run(${CMAKE_COMMAND} --build ${WORK}/build --target example_game)
+  run(${WORK}/build/example_game --version)
   read_block(docs/c.md output expected)
   foreach(program example_c example_c_shared)
     run(${CMAKE_COMMAND} --build ${WORK}/build --target ${program})

@@ -2,14 +2,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <functional>
+#include <map>
 #include <memory>
 
 #include <samestep/verify.h>
+#include <samestep/version.h>
 #include <samestep/workers.h>
 
 #include <unistd.h>
 
 #include "cli/program.h"
+#include "cli/verify/other_verifiers.h"
 #include "cli/verify/verdict_file.h"
 #include "cli/verify/verdict_line.h"
 #include "cli/verify/verify_batch.h"
@@ -105,6 +109,7 @@ struct Batch {
   std::string output;
   std::uint32_t files = 100;  ///< Number of files, of a hundred.
   std::uint64_t seed = 0;
+  std::string with;
   bool telling = false;
 };
 
@@ -213,14 +218,16 @@ std::vector<Job> jobsFor(const Batch& batch) {
 
 /// Takes out the jobs whose verdicts an earlier run left in the file of verdicts, which holds those alone
 /// from then on.
-std::vector<Job> withoutFound(const std::vector<Job>& jobs, const VerifyPlan& plan, VerdictFile& verdicts,
-                              Summary& summary) {
+std::vector<Job> withoutFound(const std::vector<Job>& jobs, const VerifyPlan& plan,
+                              const OtherVerifiers& others, VerdictFile& verdicts, Summary& summary) {
+  if (verdicts.isEmpty()) return jobs;
   std::vector<Job> left;
   const std::uint64_t asked = askedOf(plan.options);
   for (const Job& job : jobs) {
+    const std::uint32_t other = others.revisionFor(job.file);
+    const std::uint64_t content = contentOf(job.file, plan.options.limits.bytes);
     const std::string line =
-        verdicts.isEmpty() ? ""
-                           : verdicts.found(job.file, contentOf(job.file, plan.options.limits.bytes), asked);
+        verdicts.found(job.file, content, asked, other == 0 ? kSimulationRevision : other);
     if (line.empty()) {
       left.push_back(job);
       continue;
@@ -231,19 +238,36 @@ std::vector<Job> withoutFound(const std::vector<Job>& jobs, const VerifyPlan& pl
   return left;
 }
 
-int runBatch(const Batch& batch, const VerifyPlan& plan) {
+/// Has each job verified, by the program of its revision where there is one.
+void verifyEach(const std::vector<Job>& jobs, const Batch& batch, const VerifyPlan& plan,
+                const OtherVerifiers& others, const std::function<void(const Job&, const Said&)>& tell) {
+  std::map<std::uint32_t, std::vector<Job>> byRevision;
+  for (const Job& job : jobs) byRevision[others.revisionFor(job.file)].push_back(job);
+  for (const auto& [revision, some] : byRevision) {
+    std::vector<std::string> files;
+    for (const Job& job : some) files.push_back(job.file);
+    const auto tellPlace = [&, &some = some](std::size_t place, const Said& said) {
+      tell(some[place], said);
+    };
+    if (revision == 0) {
+      verifyAll(files, plan, batch.crew, tellPlace);
+    } else {
+      others.verify(revision, files, plan, tellPlace);
+    }
+  }
+}
+
+int runBatch(const Batch& batch, const VerifyPlan& plan, const OtherVerifiers& others) {
   std::vector<Job> jobs = jobsFor(batch);
   Summary summary(jobs);
   const bool several = jobs.size() != 1 || !batch.shard.empty() || batch.files < 100;
   std::unique_ptr<VerdictFile> verdicts;
   if (!batch.output.empty()) {
     verdicts = std::make_unique<VerdictFile>(batch.output);
-    jobs = withoutFound(jobs, plan, *verdicts, summary);
+    jobs = withoutFound(jobs, plan, others, *verdicts, summary);
   }
-  std::vector<std::string> files;
-  for (const Job& job : jobs) files.push_back(job.file);
   BatchProgress progress(jobs.size() > 1, batch.telling);
-  verifyAll(files, plan, batch.crew, [&](std::size_t file, const Said& said) {
+  verifyEach(jobs, batch, plan, others, [&](const Job& job, const Said& said) {
     progress.clear();
     if (verdicts) {
       verdicts->add(said.out);
@@ -253,13 +277,30 @@ int runBatch(const Batch& batch, const VerifyPlan& plan) {
       std::fflush(stdout);
     }
     std::fputs(said.error.c_str(), stderr);
-    summary.add(jobs[file], said);
+    summary.add(job, said);
     progress.show(summary);
   });
   progress.clear();
   if (verdicts) verdicts->finish();
   if (several) std::fputs(summary.text().c_str(), plan.json ? stderr : stdout);
   return summary.code();
+}
+
+/// Words of the command line that another revision's program is given, too: all options but those about the
+/// files themselves, about how it is told, and about what only this program is given.
+std::vector<std::string> optionsForOthers(const CLI::App& word) {
+  constexpr std::string_view kOwn[] = {"--shard", "--output", "--progress", "--sample-files",
+                                       "--json",  "--with",   "--game",     "--help"};
+  std::vector<std::string> words;
+  for (const CLI::Option* option : word.get_options()) {
+    const std::string name = option->get_lnames().empty() ? "" : "--" + option->get_lnames().front();
+    const bool own = std::find(std::begin(kOwn), std::end(kOwn), name) != std::end(kOwn);
+    if (name.empty() || own || option->count() == 0) continue;
+    words.push_back(name);
+    if (option->get_expected_max() == 0) continue;
+    words.push_back(CLI::detail::join(option->results(), ","));
+  }
+  return words;
 }
 
 void addBatch(CLI::App& word, Batch& batch, VerifyPlan& plan) {
@@ -297,6 +338,9 @@ void addBatch(CLI::App& word, Batch& batch, VerifyPlan& plan) {
   word.add_option("--sample-files", batch.files, "Verify only so many of 100 files")
       ->check(CLI::Range(1u, 100u));
   word.add_option("--seed", batch.seed, "What samples are drawn by; keep it from those who send recordings");
+  word.add_option("--with", batch.with,
+                  "A folder of programs samestep-REVISION, which judge the recordings of other revisions")
+      ->check(CLI::ExistingDirectory);
   word.add_flag("--to-the-end", plan.options.toTheEnd, "Go on after a mismatch, to see whether it heals");
 }
 
@@ -337,7 +381,7 @@ void addLimits(CLI::App& word, RecordingLimits& limits, std::int64_t& seconds) {
 
 }  // namespace
 
-void addVerify(CLI::App& app, const Wirings& wirings, int& result) {
+void addVerify(CLI::App& app, Wirings& wirings, int& result) {
   CLI::App* word = app.add_subcommand(
       "verify", "Replay recordings and check that every tick comes out as it was recorded");
   auto batch = std::make_shared<Batch>();
@@ -350,6 +394,7 @@ void addVerify(CLI::App& app, const Wirings& wirings, int& result) {
   addExpectations(*word, *expected);
   // These are for recordings from strangers.
   addLimits(*word, plan->options.limits, plan->seconds);
+  addGameOption(*word, wirings);
   word->callback([batch, plan, compute, expected, word, &result] {
     plan->options.kernel = compute->target();
     plan->options.expected = expectationsOf(*word, *expected);
@@ -362,7 +407,7 @@ void addVerify(CLI::App& app, const Wirings& wirings, int& result) {
       throw Unusable("--workers share out a step, processes (--jobs, --max-memory, -o) files: one at a time");
     }
     plan->options.sampleSeed = batch->seed;
-    result = runBatch(*batch, *plan);
+    result = runBatch(*batch, *plan, OtherVerifiers(batch->with, optionsForOthers(*word)));
   });
 }
 

@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include <samestep/version.h>
-
 #include "cli/program.h"
 #include "cli/verify/verdict_line.h"
 #include "state/state_hash.h"
@@ -76,8 +74,9 @@ void VerdictFile::take(const std::string& path) {
   }
 }
 
-std::string VerdictFile::found(const std::string& file, std::uint64_t content, std::uint64_t asked) const {
-  const auto line = lines_.find(keyOf(file, hex(content), hex(asked), kSimulationRevision));
+std::string VerdictFile::found(const std::string& file, std::uint64_t content, std::uint64_t asked,
+                               std::uint32_t verifier) const {
+  const auto line = lines_.find(keyOf(file, hex(content), hex(asked), verifier));
   return line == lines_.end() ? std::string() : line->second;
 }
 

@@ -24,7 +24,8 @@ class VerdictFile {
   bool isEmpty() const { return lines_.empty(); }
   /// The line that an earlier run left for a file with these bytes under these options; empty for none. One
   /// that came of too little time or memory is none.
-  std::string found(const std::string& file, std::uint64_t content, std::uint64_t asked) const;
+  std::string found(const std::string& file, std::uint64_t content, std::uint64_t asked,
+                    std::uint32_t verifier) const;
   /// Adds a line, which has an end, so that it is there whatever becomes of this process.
   /// @throws Unusable
   void add(const std::string& line);

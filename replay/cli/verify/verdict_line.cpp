@@ -98,6 +98,7 @@ std::optional<VerdictLine> readVerdictLine(std::string_view line) {
   found.asked = textOf(read, "asked");
   found.verifier = numberOf(read, "verifier");
   found.verdict = textOf(read, "verdict");
+  found.reason = bytesOf(textOf(read, "reason"));
   found.settled = read.value("settled", nlohmann::json(true)) != nlohmann::json(false);
   found.ticks = numberOf(read, "ticks");
   found.milliseconds = numberOf(read, "milliseconds");

@@ -18,6 +18,7 @@ struct VerdictLine {
   std::string asked;    ///< Hash, as many digits, of the options that a verdict goes by.
   std::uint64_t verifier = 0;
   std::string verdict;
+  std::string reason;
   bool settled = true;
   std::uint64_t ticks = 0;
   std::uint64_t milliseconds = 0;

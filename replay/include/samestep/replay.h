@@ -73,6 +73,7 @@ class Replay {
  private:
   template <class Action>
   void act(Action&& action);
+  void applyNow();
 
   Interrupt interrupt_;
   RecordingReader<S> reader_;

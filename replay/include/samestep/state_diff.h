@@ -30,6 +30,9 @@ struct WorldValue {
   std::string value;
 };
 
+/// All values of a world, in the order of differences().
+template <Scalar S>
+std::vector<WorldValue> valuesOf(const WorldState<S>& world);
 /// A hash of each value of a world with its name, in the order of differences(), so that two machines find
 /// the first in which their worlds differ without sending them.
 template <Scalar S>
