@@ -229,6 +229,8 @@ void checkSame(const Shape<Fixed>& shape) {
   expectOther([&](Shape<Fixed>& other) { other.setUserData(shape.userData() + 1); });
   expectOther([&](Shape<Fixed>& other) { other.setBody({7, 1}); });
   expectOther([&](Shape<Fixed>& other) { other.setCollisionType(shape.collisionType() + 1); });
+  expectOther([&](Shape<Fixed>& other) { other.setRollingResistance(shape.rollingResistance() + step); });
+  expectOther([&](Shape<Fixed>& other) { other.setMaterial(shape.material() + 1); });
   expectOther([&](Shape<Fixed>& other) { other.setFilter({1, 2, 3}); });
   expectOther([&](Shape<Fixed>& other) { other.setSensor(true); });
   expectOther([&](Shape<Fixed>& other) { other.setMass(Fixed(5)); });

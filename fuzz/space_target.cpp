@@ -278,6 +278,7 @@ class World {
     shape.setSensor(byteOf(look, 2) % 8 == 1);
     shape.setCollisionType(byteOf(look, 3) % 4);
     if (byteOf(look, 4) % 8 == 1) shape.setFilter({byteOf(look, 5) % 3u, byteOf(look, 6), 0xffu});
+    if (byteOf(look, 4) % 8 == 3) shape.setRollingResistance(S(byteOf(look, 5)));
     if (byteOf(look, 4) % 8 == 2) shape.setSurfaceVelocity(vector(Fixed(1 << 10)));
     const ShapeId id = space_.add(shape);
     model_.shapes.push_back({id, body});
@@ -302,7 +303,15 @@ class World {
   void moveBody(std::uint64_t op) {
     const BodyId id = someBody(op);
     Body<S>& body = space_.body(id);
-    switch (byteOf(op, 2) % 11) {
+    switch (byteOf(op, 2) % 15) {
+      case 11:
+        return body.setGravityScale(S(byteOf(op, 3)) - S(128));
+      case 12:
+        return body.setLinearDamping(S(byteOf(op, 3))), body.setAngularDamping(S(byteOf(op, 4)));
+      case 13:
+        return body.setSpeedLimit(S(byteOf(op, 3))), body.setSpinLimit(S(byteOf(op, 4)));
+      case 14:
+        return body.setRotates(byteOf(op, 3) % 2 != 0);
       case 8:
         return body.setMaySleep(byteOf(op, 3) % 4 != 0);
       case 9:

@@ -36,6 +36,11 @@ samestep_body_state stateOf(const Body<S>& body) {
   state.velocity_function = body.velocityFunc();
   state.sleeps = body.isSleeping() ? 1 : 0;
   state.may_sleep = body.maySleep() ? 1 : 0;
+  state.gravity_scale = toDouble(body.gravityScale());
+  state.linear_damping = toDouble(body.linearDamping());
+  state.angular_damping = toDouble(body.angularDamping());
+  state.speed_limit = toDouble(body.speedLimit());
+  state.spin_limit = toDouble(body.spinLimit());
   return state;
 }
 
@@ -177,6 +182,36 @@ samestep_status samestep_body_set_angular_velocity(samestep_world* world, samest
 
 samestep_status samestep_body_set_force(samestep_world* world, samestep_body_id body, double x, double y) {
   return change(world, body, [&]<class S>(auto& of, S) { of.setForce(vector<S>(x, y)); });
+}
+
+samestep_status samestep_body_set_gravity_scale(samestep_world* world, samestep_body_id body, double scale) {
+  return change(world, body, [&]<class S>(auto& of, S) { of.setGravityScale(number<S>(scale)); });
+}
+
+samestep_status samestep_body_set_damping(samestep_world* world, samestep_body_id body, double linear,
+                                          double angular) {
+  return change(world, body, [&]<class S>(auto& of, S) {
+    auto changed = of;
+    changed.setLinearDamping(number<S>(linear));
+    changed.setAngularDamping(number<S>(angular));
+    of.setLinearDamping(changed.linearDamping());
+    of.setAngularDamping(changed.angularDamping());
+  });
+}
+
+samestep_status samestep_body_set_limits(samestep_world* world, samestep_body_id body, double speed,
+                                         double spin) {
+  return change(world, body, [&]<class S>(auto& of, S) {
+    auto changed = of;
+    changed.setSpeedLimit(number<S>(speed));
+    changed.setSpinLimit(number<S>(spin));
+    of.setSpeedLimit(changed.speedLimit());
+    of.setSpinLimit(changed.spinLimit());
+  });
+}
+
+samestep_status samestep_body_set_rotates(samestep_world* world, samestep_body_id body, int32_t rotates) {
+  return change(world, body, [&](auto& of, auto) { of.setRotates(rotates != 0); });
 }
 
 samestep_status samestep_body_activate(samestep_world* world, samestep_body_id body) {

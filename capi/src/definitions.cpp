@@ -146,6 +146,7 @@ Shape<S> toShape(BodyId body, const samestep_shape_def& from) {
   shape.setCollisionType(from.collision_type);
   shape.setFilter({from.group, from.category, from.mask});
   shape.setSensor(from.sensor != 0);
+  shape.setMaterial(from.material);
   shape.setUserData(from.user_data);
   return shape;
 }

@@ -45,6 +45,8 @@ samestep_shape_state stateOf(const Shape<S>& shape) {
   state.group = shape.filter().group;
   state.category = shape.filter().category;
   state.mask = shape.filter().mask;
+  state.material = shape.material();
+  state.rolling_resistance = toDouble(shape.rollingResistance());
   return state;
 }
 
@@ -142,6 +144,16 @@ samestep_status samestep_shape_set_surface_velocity(samestep_world* world, sames
 samestep_status samestep_shape_set_filter(samestep_world* world, samestep_shape_id shape, uint32_t group,
                                           uint32_t category, uint32_t mask) {
   return change(world, shape, [&](auto& of, auto) { of.setFilter({group, category, mask}); });
+}
+
+samestep_status samestep_shape_set_rolling_resistance(samestep_world* world, samestep_shape_id shape,
+                                                      double resistance) {
+  return change(world, shape, [&]<class S>(auto& of, S) { of.setRollingResistance(number<S>(resistance)); });
+}
+
+samestep_status samestep_shape_set_material(samestep_world* world, samestep_shape_id shape,
+                                            uint32_t material) {
+  return change(world, shape, [&](auto& of, auto) { of.setMaterial(material); });
 }
 
 samestep_status samestep_shape_set_collision_type(samestep_world* world, samestep_shape_id shape,

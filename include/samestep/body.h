@@ -173,6 +173,32 @@ class Body {
   void setVelocityFunc(CallbackNumber number) { put(velocityFunc_, number); }
   CallbackNumber velocityFunc() const { return velocityFunc_; }
 
+  /// Factor of gravity in the body's acceleration; 1 at first.
+  S gravityScale() const { return gravityScale_; }
+  /// @param scale  within +-2^10
+  /// @throws IllegalBody
+  void setGravityScale(S scale);
+  /// Part of its velocity that the body loses by itself, per second: a step of dt seconds divides what it had
+  /// by 1 + damping * dt, beside the damping of the Space; 0 at first.
+  S linearDamping() const { return linearDamping_; }
+  S angularDamping() const { return angularDamping_; }
+  /// @param perSecond  1/s, 0 to 2^10
+  /// @throws IllegalBody
+  void setLinearDamping(S perSecond);
+  void setAngularDamping(S perSecond);
+  /// Speed of the centre of mass, m/s, and spin, rad/s, beyond which no step and no impulse leaves a dynamic
+  /// body: the largest a body may have at all, at first.
+  S speedLimit() const { return speedLimit_; }
+  S spinLimit() const { return spinLimit_; }
+  /// @param limit  0 to kMaxSpeed, which is none
+  /// @throws IllegalBody
+  void setSpeedLimit(S limit);
+  /// @param limit  0 to kMaxAngularSpeed, which is none
+  /// @throws IllegalBody
+  void setSpinLimit(S limit);
+  /// Has impulses and torques turn the body, or not. One that they do not turn goes on at the spin it has.
+  void setRotates(bool rotates);
+
   void setUserData(std::uint64_t data) { userData_ = data; }
   std::uint64_t userData() const { return userData_; }
 
@@ -257,6 +283,11 @@ class Body {
     visit("positionFunc", self.positionFunc_);
     visit("velocityFunc", self.velocityFunc_);
     visit("userData", self.userData_);
+    visit("gravityScale", self.gravityScale_);
+    visit("linearDamping", self.linearDamping_);
+    visit("angularDamping", self.angularDamping_);
+    visit("speedLimit", self.speedLimit_);
+    visit("spinLimit", self.spinLimit_);
     visit("restTime", self.restTime_);
     visit("island", self.island_);
     visit("activity", self.activity_);
@@ -296,6 +327,12 @@ class Body {
   Motion pushed(const Vector<S>& impulse, const Vector<S>& worldPoint) const;
   /// The velocities after gravity, force and torque, unchecked.
   Motion accelerated(const Vector<S>& gravity, S damping, S dt) const;
+  /// The velocities that its own damping leaves of what it has.
+  Motion damped(S dt) const;
+  /// True if its damping and limits are within their ranges.
+  bool movesWell() const;
+  /// Velocities within the body's own limits.
+  Motion limited(const Motion& motion) const;
   /// Acceleration by gravity, force and torque, per second.
   Motion acceleration(const Vector<S>& gravity) const;
   /// True if what it says of its rest may be.
@@ -346,6 +383,11 @@ class Body {
   S mass_{};
   Scaled<S> moment_{};
   Vector<S> centerOfMass_{};
+  S gravityScale_{1};
+  S linearDamping_{};
+  S angularDamping_{};
+  S speedLimit_ = kMaxSpeed<S>;
+  S spinLimit_ = kMaxAngularSpeed<S>;
   std::uint64_t userData_ = 0;
   CallbackNumber positionFunc_ = 0;
   CallbackNumber velocityFunc_ = 0;

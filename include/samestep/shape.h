@@ -169,6 +169,13 @@ class Shape {
   /// @throws ValueOutOfRange
   /// MIS: shapeSetSurfaceVelocity
   void setSurfaceVelocity(const Vector<S>& velocity);
+  constexpr S rollingResistance() const { return rollingResistance_; }
+  /// Has a contact oppose that its bodies turn against each other, by a torque of up to the larger
+  /// coefficient of the two shapes times the larger radius times the force that presses them together. It
+  /// begins a step after the touch.
+  /// @param resistance  a part of the radius, 0, as at first, to kMaxMaterial
+  /// @throws ValueOutOfRange
+  void setRollingResistance(S resistance);
   /// MIS: shapeGetCollisionType
   constexpr CollisionType collisionType() const { return collisionType_; }
   /// MIS: shapeSetCollisionType
@@ -182,6 +189,10 @@ class Shape {
   /// Any 64 bits; saved with the shape.
   constexpr std::uint64_t userData() const { return userData_; }
   constexpr void setUserData(std::uint64_t data) { userData_ = data; }
+
+  /// Number of a game's own for what the surface is of; saved with the shape, and nothing to a step.
+  constexpr std::uint32_t material() const { return material_; }
+  constexpr void setMaterial(std::uint32_t material) { material_ = material; }
 
   /// Metres: of a circle, or by which a segment or polygon is rounded (grown) on all sides.
   constexpr S radius() const { return radius_; }
@@ -211,8 +222,10 @@ class Shape {
     visit("group", self.filter_.group);
     visit("category", self.filter_.category);
     visit("mask", self.filter_.mask);
+    visit("material", self.material_);
     visit("elasticity", self.elasticity_);
     visit("friction", self.friction_);
+    visit("rollingResistance", self.rollingResistance_);
     visit("surfaceVelocity", self.surfaceVelocity_);
     visit("radius", self.radius_);
     visit("mass", self.massInfo_.mass);
@@ -246,14 +259,15 @@ class Shape {
   S radius_{};
   S elasticity_{};
   S friction_{};
+  S rollingResistance_{};
   Vector<S> surfaceVelocity_;
   std::uint64_t userData_ = 0;
   BodyId body_;
   ShapeId id_;
   CollisionType collisionType_ = kWildcardCollisionType;
   ShapeFilter filter_;
-  std::uint32_t unused_ = 0;  // Keeps the record free of padding.
-  std::uint8_t unusedByte_ = 0;
+  std::uint32_t material_ = 0;
+  std::uint8_t unusedByte_ = 0;  // Keeps the record free of padding.
   ShapeType type_ = ShapeType::circle;
   std::uint8_t sensor_ = 0;
   std::uint8_t count_ = 1;

@@ -128,7 +128,8 @@ void SceneBuilder<S>::readGrid(const Cursor& at, const Spawn<S>& body, const std
 template <Scalar S>
 Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
   at.allow({"name", "type", "mass", "moment", "rotates", "position", "angle", "velocity", "angularVelocity",
-            "userData", "maySleep", "shapes", "grid"});
+            "userData", "maySleep", "gravityScale", "linearDamping", "angularDamping", "speedLimit",
+            "spinLimit", "shapes", "grid"});
   Spawn<S> made;
   Body<S>& body = made.body;
   at.optional("rotates", [&](const Cursor& v) {
@@ -154,6 +155,11 @@ Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
   at.optional("velocity", [&](const Cursor& v) { body.setVelocity(v.template vector<S>()); });
   at.optional("angularVelocity", [&](const Cursor& v) { body.setAngularVelocity(v.template number<S>()); });
   at.optional("userData", [&](const Cursor& v) { body.setUserData(v.integer(0, ~std::uint64_t{0})); });
+  at.optional("gravityScale", [&](const Cursor& v) { body.setGravityScale(v.template number<S>()); });
+  at.optional("linearDamping", [&](const Cursor& v) { body.setLinearDamping(v.template number<S>()); });
+  at.optional("angularDamping", [&](const Cursor& v) { body.setAngularDamping(v.template number<S>()); });
+  at.optional("speedLimit", [&](const Cursor& v) { body.setSpeedLimit(v.template number<S>()); });
+  at.optional("spinLimit", [&](const Cursor& v) { body.setSpinLimit(v.template number<S>()); });
   at.optional("maySleep", [&](const Cursor& v) { body.setMaySleep(v.boolean()); });
   if (at.has("shapes")) {
     const Cursor shapes = at.at("shapes");
@@ -236,9 +242,9 @@ Shape<S> SceneBuilder<S>::readGeometry(const Cursor& at) {
 
 template <Scalar S>
 Shape<S> SceneBuilder<S>::readShape(const Cursor& at) {
-  at.allow({"circle", "offset", "box", "polygon", "hull", "segment", "neighbors", "radius", "density", "mass",
-            "friction", "elasticity", "surfaceVelocity", "collisionType", "group", "category", "mask",
-            "sensor", "userData"});
+  at.allow({"circle", "offset",   "box",  "polygon",  "hull",       "segment",           "neighbors",
+            "radius", "density",  "mass", "friction", "elasticity", "surfaceVelocity",   "collisionType",
+            "group",  "category", "mask", "sensor",   "material",   "rollingResistance", "userData"});
   Shape<S> shape = readGeometry(at);
   const auto word = [](const Cursor& v) { return static_cast<std::uint32_t>(v.integer(0, 0xffffffffu)); };
   ShapeFilter filter;
@@ -254,6 +260,9 @@ Shape<S> SceneBuilder<S>::readShape(const Cursor& at) {
   at.optional("group", [&](const Cursor& v) { filter.group = word(v); });
   at.optional("category", [&](const Cursor& v) { filter.category = word(v); });
   at.optional("mask", [&](const Cursor& v) { filter.mask = word(v); });
+  at.optional("rollingResistance",
+              [&](const Cursor& v) { shape.setRollingResistance(v.template number<S>()); });
+  at.optional("material", [&](const Cursor& v) { shape.setMaterial(word(v)); });
   at.optional("sensor", [&](const Cursor& v) { shape.setSensor(v.boolean()); });
   at.optional("userData", [&](const Cursor& v) { shape.setUserData(v.integer(0, ~std::uint64_t{0})); });
   shape.setFilter(filter);

@@ -66,6 +66,7 @@ struct alignas(32) ShapeTraits {
   bool sensor = false;
   bool round = false;    ///< A circle.
   bool rounded = false;  ///< Has a radius: its surface may roll.
+  bool resists = false;  ///< Has a rolling resistance.
 
   static ShapeTraits of(const Shape<S>& shape, std::uint32_t surface) {
     return {surface,
@@ -74,7 +75,8 @@ struct alignas(32) ShapeTraits {
             static_cast<std::int32_t>(shape.extent() * S(kReachUnits)) + 1,
             shape.sensor(),
             shape.type() == ShapeType::circle,
-            shape.radius() != S(0)};
+            shape.radius() != S(0),
+            shape.rollingResistance() != S(0)};
   }
 };
 

@@ -70,7 +70,7 @@ void Body<S>::deriveMass() {
 
 template <Scalar S>
 bool Body<S>::wellFormed() const {
-  if (type_ > BodyType::staticBody || rotates_ > 1 || !restsWell()) return false;
+  if (type_ > BodyType::staticBody || rotates_ > 1 || !restsWell() || !movesWell()) return false;
   if (!(mass_ == S(0) || (mass_ >= kMinMass<S> && mass_ <= kMaxMass<S>))) return false;
   // Shapes of any supported size and mass add up to no more, with room to spare.
   const Scaled<S> zero{};
@@ -95,6 +95,14 @@ bool Body<S>::restsWell() const {
   if ((island_ != 0) != (asleep && isDynamic())) return false;
   const Vector<S> none{};
   return !asleep || (velocity_ == none && angularVelocity_ == S(0));
+}
+
+template <Scalar S>
+bool Body<S>::movesWell() const {
+  const auto upTo = [](S value, S limit) { return value >= S(0) && value <= limit; };
+  return within(gravityScale_, kMostScale<S>) && upTo(linearDamping_, kMostScale<S>) &&
+         upTo(angularDamping_, kMostScale<S>) && upTo(speedLimit_, kMaxSpeed<S>) &&
+         upTo(spinLimit_, kMaxAngularSpeed<S>);
 }
 
 template <Scalar S>
@@ -141,6 +149,47 @@ void Body<S>::setMoment(S moment) {
   put(moment_, toScaled(moment));
   put(rotates_, std::uint8_t{1});
   derive();
+}
+
+template <Scalar S>
+void Body<S>::setRotates(bool rotates) {
+  put(rotates_, static_cast<std::uint8_t>(rotates ? 1 : 0), isDynamic());
+  derive();
+}
+
+template <Scalar S>
+void Body<S>::setGravityScale(S scale) {
+  requireWithin(scale, kMostScale<S>, "Body::setGravityScale: scale is ", "");
+
+  put(gravityScale_, scale, isDynamic());
+}
+
+template <Scalar S>
+void Body<S>::setLinearDamping(S perSecond) {
+  requireUpTo(perSecond, kMostScale<S>, "Body::setLinearDamping: damping is ", " 1/s");
+
+  put(linearDamping_, perSecond, isDynamic());
+}
+
+template <Scalar S>
+void Body<S>::setAngularDamping(S perSecond) {
+  requireUpTo(perSecond, kMostScale<S>, "Body::setAngularDamping: damping is ", " 1/s");
+
+  put(angularDamping_, perSecond, isDynamic());
+}
+
+template <Scalar S>
+void Body<S>::setSpeedLimit(S limit) {
+  requireUpTo(limit, kMaxSpeed<S>, "Body::setSpeedLimit: limit is ", " m/s");
+
+  put(speedLimit_, limit, isDynamic());
+}
+
+template <Scalar S>
+void Body<S>::setSpinLimit(S limit) {
+  requireUpTo(limit, kMaxAngularSpeed<S>, "Body::setSpinLimit: limit is ", " rad/s");
+
+  put(spinLimit_, limit, isDynamic());
 }
 
 template <Scalar S>

@@ -52,6 +52,12 @@ struct BodyAccess {
   static Motion accelerated(const Body<S>& body, const Vector<S>& gravity, S damping, S dt) {
     return body.accelerated(gravity, damping, dt);
   }
+  /// Takes what the body's own damping leaves of its velocities.
+  static void damp(Body<S>& body, S dt) {
+    const Motion left = body.damped(dt);
+    body.velocity_ = left.velocity;
+    body.angularVelocity_ = left.angularVelocity;
+  }
   static Motion acceleration(const Body<S>& body, const Vector<S>& gravity) {
     return body.acceleration(gravity);
   }

@@ -29,6 +29,17 @@ void requireWithin(const T& value, S limit, const char* is, const char* unit) {
                               unit);
 }
 
+/// Largest factor of gravity, and largest damping, 1/s.
+template <Scalar S>
+inline constexpr S kMostScale = S(1 << 10);
+
+/// Refuses what is not between 0 and a limit.
+template <Scalar S>
+void requireUpTo(S value, S limit, const char* is, const char* unit) {
+  require<Fault::IllegalBody>(value >= S(0) && value <= limit, is, value, unit, ", allowed are 0 to ", limit,
+                              unit);
+}
+
 /// Says of which kind a body is that is not dynamic.
 const char* kindOf(BodyType type) {
   return type == BodyType::staticBody ? ": the body is static" : ": the body is kinematic";

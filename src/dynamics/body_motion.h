@@ -11,6 +11,12 @@
 namespace samestep {
 namespace {
 
+/// Velocity that a damping leaves.
+template <Scalar S>
+S leftOf(S velocity, S damping, S dt) {
+  return damping == S(0) || dt <= S(0) ? velocity : velocity / (S(1) + damping * dt);
+}
+
 /// Acceleration by a force of a thing of that inverse mass, kept where sums with gravity cannot overflow.
 template <Scalar S>
 S answer(S force, const Scaled<S>& inverse) {
@@ -84,15 +90,36 @@ const char* Body<S>::cannotStep() const {
 
 template <Scalar S>
 typename Body<S>::Motion Body<S>::acceleration(const Vector<S>& gravity) const {
-  return {gravity + Vector<S>(answer(force_.x, inverseMass_), answer(force_.y, inverseMass_)),
+  return {gravity * gravityScale_ + Vector<S>(answer(force_.x, inverseMass_), answer(force_.y, inverseMass_)),
           rotates() ? answer(torque_, inverseMoment_) : S(0)};
 }
 
 template <Scalar S>
 typename Body<S>::Motion Body<S>::accelerated(const Vector<S>& gravity, S damping, S dt) const {
-  const Motion pull = acceleration(gravity);
-  return {{dot(velocity_.x, damping, pull.velocity.x, dt), dot(velocity_.y, damping, pull.velocity.y, dt)},
-          dot(angularVelocity_, damping, pull.angularVelocity, dt)};
+  const Motion pull = acceleration(gravity), had = damped(dt);
+  return {
+      {dot(had.velocity.x, damping, pull.velocity.x, dt), dot(had.velocity.y, damping, pull.velocity.y, dt)},
+      dot(had.angularVelocity, damping, pull.angularVelocity, dt)};
+}
+
+template <Scalar S>
+typename Body<S>::Motion Body<S>::damped(S dt) const {
+  return {{leftOf(velocity_.x, linearDamping_, dt), leftOf(velocity_.y, linearDamping_, dt)},
+          leftOf(angularVelocity_, angularDamping_, dt)};
+}
+
+template <Scalar S>
+typename Body<S>::Motion Body<S>::limited(const Motion& motion) const {
+  Motion within = motion;
+  if (speedLimit_ < kMaxSpeed<S>) {
+    const S speed = length(motion.velocity);
+    if (speed > speedLimit_) {
+      within.velocity = {mulDiv(motion.velocity.x, speedLimit_, speed),
+                         mulDiv(motion.velocity.y, speedLimit_, speed)};
+    }
+  }
+  within.angularVelocity = clamp(motion.angularVelocity, -spinLimit_, spinLimit_);
+  return within;
 }
 
 template <Scalar S>
@@ -101,8 +128,15 @@ std::uint8_t Body<S>::holdVelocity(const Motion& motion) {
   highWater<S>("body: spin before it is held", motion.angularVelocity);
   velocity_ = heldWithin(motion.velocity, kMaxSpeed<S>);
   angularVelocity_ = clamp(motion.angularVelocity, -kMaxAngularSpeed<S>, kMaxAngularSpeed<S>);
-  return static_cast<std::uint8_t>((velocity_ == motion.velocity ? kHeldNothing : kHeldSpeed) |
-                                   (angularVelocity_ == motion.angularVelocity ? kHeldNothing : kHeldSpin));
+  const auto held =
+      static_cast<std::uint8_t>((velocity_ == motion.velocity ? kHeldNothing : kHeldSpeed) |
+                                (angularVelocity_ == motion.angularVelocity ? kHeldNothing : kHeldSpin));
+  if (speedLimit_ < kMaxSpeed<S> || spinLimit_ < kMaxAngularSpeed<S>) [[unlikely]] {
+    const Motion own = limited({velocity_, angularVelocity_});
+    velocity_ = own.velocity;
+    angularVelocity_ = own.angularVelocity;
+  }
+  return held;
 }
 
 template <Scalar S>

@@ -82,6 +82,14 @@ void Shape<S>::setFriction(S friction) {
 }
 
 template <Scalar S>
+void Shape<S>::setRollingResistance(S resistance) {
+  require<Fault::ValueOutOfRange>(resistance >= S(0) && resistance <= S(kMaxMaterial),
+                                  "Shape::setRollingResistance: resistance is ", resistance,
+                                  ", allowed are 0 to ", kMaxMaterial);
+  rollingResistance_ = resistance;
+}
+
+template <Scalar S>
 void Shape<S>::setSurfaceVelocity(const Vector<S>& velocity) {
   require<Fault::ValueOutOfRange>(within(velocity, S(kMaxMaterial)),
                                   "Shape::setSurfaceVelocity: velocity is ", velocity,
@@ -113,6 +121,7 @@ template <Scalar S>
 bool Shape<S>::surfaceWellFormed() const {
   const S most(kMaxMaterial);
   if (!(elasticity_ >= S(0) && elasticity_ <= most && friction_ >= S(0) && friction_ <= most)) return false;
+  if (!(rollingResistance_ >= S(0) && rollingResistance_ <= most)) return false;
   return sensor_ <= 1 && within(surfaceVelocity_, most);
 }
 
@@ -129,7 +138,8 @@ bool Shape<S>::same(const Shape& other) const {
   return sameGeometry(other) && elasticity_ == other.elasticity_ && friction_ == other.friction_ &&
          surfaceVelocity_ == other.surfaceVelocity_ && userData_ == other.userData_ && body_ == other.body_ &&
          id_ == other.id_ && id_.space == other.id_.space && collisionType_ == other.collisionType_ &&
-         filter_ == other.filter_ && sensor_ == other.sensor_;
+         filter_ == other.filter_ && sensor_ == other.sensor_ && material_ == other.material_ &&
+         rollingResistance_ == other.rollingResistance_;
 }
 
 template <Scalar S>

@@ -300,8 +300,8 @@ void Objects<S>::replace(Context& world, ShapeId id, const Shape<S>& shape, bool
 template <Scalar S>
 bool Objects<S>::collidesAlike(const Shape<S>& a, const Shape<S>& b) {
   return a.friction() == b.friction() && a.elasticity() == b.elasticity() &&
-         a.surfaceVelocity() == b.surfaceVelocity() && a.sensor() == b.sensor() && a.filter() == b.filter() &&
-         a.collisionType() == b.collisionType();
+         a.rollingResistance() == b.rollingResistance() && a.surfaceVelocity() == b.surfaceVelocity() &&
+         a.sensor() == b.sensor() && a.filter() == b.filter() && a.collisionType() == b.collisionType();
 }
 
 /// The next step collides anew what touches a shape.

@@ -243,6 +243,11 @@ TYPED_TEST(SceneTest, EachKeyOfABodyIsHeard) {
                              {"velocity", "[1, 0]"},
                              {"angularVelocity", "1"},
                              {"userData", "18446744073709551615"},
+                             {"gravityScale", "-0.5"},
+                             {"linearDamping", "2"},
+                             {"angularDamping", "3"},
+                             {"speedLimit", "4"},
+                             {"spinLimit", "5"},
                              {"shapes", R"([{"circle": 1}])"},
                              {"grid", R"({"columns": 2})"}},
                             "name");
@@ -269,6 +274,8 @@ TYPED_TEST(SceneTest, EachKeyOfAShapeIsHeard) {
                              {"category", "2", kCircle},
                              {"mask", "5", kCircle},
                              {"sensor", "true", kCircle},
+                             {"material", "3", kCircle},
+                             {"rollingResistance", "0.125", kCircle},
                              {"userData", "9", kCircle}});
 }
 

@@ -62,7 +62,7 @@ TYPED_TEST(FieldsTest, FieldsAccountForEveryByte) {
   constexpr std::size_t kBodyFiller = 2;
   EXPECT_EQ(leavesOf(Body<S>()).bytes() + kDerived + kBelonging + kWithinStep + kBodyFiller, sizeof(Body<S>));
   constexpr std::size_t kIdAndSpace = 16;
-  constexpr std::size_t kShapeFiller = 5;
+  constexpr std::size_t kShapeFiller = 1;
   constexpr std::size_t kPlaces = sizeof(VertexList<S>) - VertexList<S>::kFew * sizeof(Vector<S>);
   EXPECT_EQ(leavesOf(boxShape(BodyId{1, 1}, S(2), S(3))).bytes() + kIdAndSpace + kShapeFiller + kPlaces,
             sizeof(Shape<S>));

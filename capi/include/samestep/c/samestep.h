@@ -367,8 +367,13 @@ typedef struct samestep_body_state {
   int32_t rotates;
   uint32_t position_function;
   uint32_t velocity_function;
-  int32_t sleeps;    /* 1 while steps leave it alone. */
-  int32_t may_sleep; /* 0 of a body that keeps its island awake. */
+  int32_t sleeps;         /* 1 while steps leave it alone. */
+  int32_t may_sleep;      /* 0 of a body that keeps its island awake. */
+  double gravity_scale;   /* Factor of gravity in its acceleration. */
+  double linear_damping;  /* 1/s */
+  double angular_damping; /* 1/s */
+  double speed_limit;     /* m/s, 2^10 for none. */
+  double spin_limit;      /* rad/s, 2^8 for none. */
 } samestep_body_state;
 
 /* What drawing needs of a body. */
@@ -451,6 +456,20 @@ SAMESTEP_C_API samestep_status samestep_body_sleep(samestep_world* world, samest
 /* Whether the body may ever sleep, and with it what touches it: 1 at first. */
 SAMESTEP_C_API samestep_status samestep_body_set_may_sleep(samestep_world* world, samestep_body_id body,
                                                            int32_t may_sleep);
+/* Factor of gravity in its acceleration, within 2^10; 1 at first. SAMESTEP_ILLEGAL_BODY. */
+SAMESTEP_C_API samestep_status samestep_body_set_gravity_scale(samestep_world* world, samestep_body_id body,
+                                                               double scale);
+/* A step of dt seconds divides its velocities by 1 + damping dt, 1/s, 0 to 2^10; 0 at first.
+ * SAMESTEP_ILLEGAL_BODY. */
+SAMESTEP_C_API samestep_status samestep_body_set_damping(samestep_world* world, samestep_body_id body,
+                                                         double linear, double angular);
+/* Speed, m/s, 0 to 2^10, and spin, rad/s, 0 to 2^8, beyond which no step leaves it; the largest are none, as
+ * at first. SAMESTEP_ILLEGAL_BODY. */
+SAMESTEP_C_API samestep_status samestep_body_set_limits(samestep_world* world, samestep_body_id body,
+                                                        double speed, double spin);
+/* Whether impulses and torques turn the body: 1 or 0. */
+SAMESTEP_C_API samestep_status samestep_body_set_rotates(samestep_world* world, samestep_body_id body,
+                                                         int32_t rotates);
 /* The numbers of the functions that move the body and change its velocity; 0: the engine's own. */
 SAMESTEP_C_API samestep_status samestep_body_set_functions(samestep_world* world, samestep_body_id body,
                                                            uint32_t position_function,
@@ -548,7 +567,7 @@ typedef struct samestep_shape_def {
   uint32_t category; /* Shapes touch if the category of each has a bit of the mask of the other: */
   uint32_t mask;     /* all bits at first. */
   int32_t sensor;    /* 1 for a shape that reports contacts and pushes nothing. */
-  int32_t reserved;  /* 0 */
+  uint32_t material; /* A number of the game's own; 0 at first. */
 } samestep_shape_def;
 
 /* What a shape is. */
@@ -570,6 +589,9 @@ typedef struct samestep_shape_state {
   uint32_t group;
   uint32_t category;
   uint32_t mask;
+  uint32_t material;
+  uint32_t reserved; /* 0 */
+  double rolling_resistance;
 } samestep_shape_state;
 
 /* Sets all fields to their defaults: a box of 1 m without mass or friction that touches everything. Null does
@@ -628,6 +650,14 @@ SAMESTEP_C_API samestep_status samestep_shape_set_filter(samestep_world* world, 
 /* What handlers are chosen by. */
 SAMESTEP_C_API samestep_status samestep_shape_set_collision_type(samestep_world* world,
                                                                  samestep_shape_id shape, uint32_t type);
+/* A part of the radius, 0 to 2^10, 0 at first: a contact opposes that its bodies turn against each other.
+ * SAMESTEP_VALUE_OUT_OF_RANGE. */
+SAMESTEP_C_API samestep_status samestep_shape_set_rolling_resistance(samestep_world* world,
+                                                                     samestep_shape_id shape,
+                                                                     double resistance);
+/* A number of the game's own for what the surface is of; state, saved and hashed. */
+SAMESTEP_C_API samestep_status samestep_shape_set_material(samestep_world* world, samestep_shape_id shape,
+                                                           uint32_t material);
 /* 1 for a shape that reports contacts and pushes nothing, else 0. */
 SAMESTEP_C_API samestep_status samestep_shape_set_sensor(samestep_world* world, samestep_shape_id shape,
                                                          int32_t sensor);

@@ -2,6 +2,7 @@
 #include "solver/sequential_impulse/stages/impulse_stages.h"
 
 #include "base/require_ieee.h"
+#include "contacts/stages/resist_rolling.h"
 #include "dynamics/body_access.h"
 
 namespace samestep {
@@ -47,6 +48,8 @@ void ImpulseStages<S>::prepare(StepContext<S>& step) {
   for (const Pair<S>& pair : step.state.pairs) {
     if (pair.solved == 0) continue;
     if (++prepared % Budget::kPairsAtOnce == 0) step.pay(Budget::kPerPair * Budget::kPairsAtOnce);
+    if (step.derived.traits[pair.a.index].resists || step.derived.traits[pair.b.index].resists) [[unlikely]]
+      ResistRolling<S>::act(step, pair);
     const std::uint32_t a = shapes.valueAt(pair.a.index).body().index;
     const std::uint32_t b = shapes.valueAt(pair.b.index).body().index;
     const std::uint32_t solverA = solverIndexOf(a);

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "base/require_ieee.h"
+#include "contacts/stages/resist_rolling.h"
 #include "dynamics/body_access.h"
 #include "dynamics/stages/integrate.h"
 
@@ -52,7 +53,7 @@ void SoftStages<S>::prepare(StepContext<S>& step) {
 
 /// Sorts the pairs to be solved into groups that share no body, and marks their bodies.
 template <Scalar S>
-void SoftStages<S>::findGroups(const StepContext<S>& step) {
+void SoftStages<S>::findGroups(StepContext<S>& step) {
   const Derived<S>& derived = step.derived;
   const std::vector<Pair<S>>& pairs = step.state.pairs;
   groups_.clear(step.state.bodies.slots());
@@ -65,6 +66,8 @@ void SoftStages<S>::findGroups(const StepContext<S>& step) {
     const Pair<S>& pair = pairs[i];
     if (pair.solved == 0) continue;
     const ShapeTraits<S>&shapeA = derived.traits[pair.a.index], &shapeB = derived.traits[pair.b.index];
+    if (shapeA.resists || shapeB.resists) [[unlikely]]
+      ResistRolling<S>::act(step, pair);
     const std::uint32_t a = shapeA.body, b = shapeB.body;
     solvedPairs_.push_back({i, a, b, shapeA.round, shapeB.round});
     for (int k = 0; fast && k < pair.count; ++k) {
@@ -118,6 +121,7 @@ void SoftStages<S>::takeBodies(StepContext<S>& step) {
     if (body.velocityFunc() != 0) [[unlikely]] {
       Integrate<S>::callVelocityFunc(step, i, keptInStep);
     } else if (body.isDynamic()) {
+      BodyAccess<S>::damp(body, step.dt);
       const auto motion = BodyAccess<S>::acceleration(body, step.state.settings.gravity);
       pull[0] = motion.velocity.x;
       pull[1] = motion.velocity.y;

@@ -32,7 +32,7 @@ class SoftStages {
     bool roundA, roundB;
   };
 
-  void findGroups(const StepContext<S>& step);
+  void findGroups(StepContext<S>& step);
   void takeStill(const StepContext<S>& step);
   void findJoints(const StepContext<S>& step);
   void takeBodies(StepContext<S>& step);
