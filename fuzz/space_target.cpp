@@ -227,6 +227,7 @@ class World {
       body.setAngularVelocity(number(Fixed(-256), Fixed(256)));
     }
     body.setAngle(number(Fixed(-4), Fixed(4)));
+    body.setBullet((op >> 17 & 1) != 0);
     if (byteOf(op, 5) % 16 == 0) body.setPositionFunc(1);
     if (byteOf(op, 5) % 16 == 1) body.setVelocityFunc(1);
     if (byteOf(op, 5) % 16 == 2) body.setCenterOfMass(vector(Fixed(2)));
@@ -447,6 +448,8 @@ class World {
         return space_.setSleepTimeThreshold(number(Fixed(-1), Fixed(1)) * ratio<S>(1, 4));
       case 14:
         return space_.setIdleSpeedThreshold(number(Fixed(-1), Fixed(2)));
+      case 11:
+        return space_.setContinuous((op >> 16 & 1) != 0);
       case 12:
         // continueTwice gives the same limit to the world that it restores.
         return space_.setMaxPairs(byteOf(op, 2) % 8 == 0 ? byteOf(op, 3) % 32 : kDefaultMaxPairs);

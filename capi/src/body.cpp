@@ -41,6 +41,7 @@ samestep_body_state stateOf(const Body<S>& body) {
   state.angular_damping = toDouble(body.angularDamping());
   state.speed_limit = toDouble(body.speedLimit());
   state.spin_limit = toDouble(body.spinLimit());
+  state.bullet = body.bullet() ? 1 : 0;
   return state;
 }
 
@@ -254,6 +255,10 @@ samestep_status samestep_body_set_type(samestep_world* world, samestep_body_id b
 samestep_status samestep_body_set_user_data(samestep_world* world, samestep_body_id body,
                                             uint64_t user_data) {
   return change(world, body, [&](auto& of, auto) { of.setUserData(user_data); });
+}
+
+samestep_status samestep_body_set_bullet(samestep_world* world, samestep_body_id body, int32_t bullet) {
+  return change(world, body, [&](auto& of, auto) { of.setBullet(bullet != 0); });
 }
 
 samestep_status samestep_body_set_functions(samestep_world* world, samestep_body_id body,

@@ -87,6 +87,7 @@ Settings<S> toSettings(const samestep_settings& from) {
   settings.worldExtent = number<S>(from.world_extent);
   settings.sleepTimeThreshold = number<S>(from.sleep_time_threshold);
   settings.idleSpeedThreshold = number<S>(from.idle_speed_threshold);
+  settings.continuous = from.continuous != 0 ? 1 : 0;
   return settings;
 }
 
@@ -111,6 +112,7 @@ samestep_settings toC(const Settings<S>& from) {
   settings.world_extent = toDouble(from.worldExtent);
   settings.sleep_time_threshold = toDouble(from.sleepTimeThreshold);
   settings.idle_speed_threshold = toDouble(from.idleSpeedThreshold);
+  settings.continuous = from.continuous;
   return settings;
 }
 
@@ -126,6 +128,7 @@ Body<S> toBody(const samestep_body_def& from) {
   body.setAngle(number<S>(from.angle));
   body.setVelocity(vector<S>(from.velocity));
   body.setAngularVelocity(number<S>(from.angular_velocity));
+  body.setBullet(from.bullet != 0);
   body.setUserData(from.user_data);
   body.setPositionFunc(from.position_function);
   body.setVelocityFunc(from.velocity_function);

@@ -198,6 +198,10 @@ class Body {
   void setSpinLimit(S limit);
   /// Has impulses and torques turn the body, or not. One that they do not turn goes on at the spin it has.
   void setRotates(bool rotates);
+  /// True if a step stops it also where it meets what contacts move, see docs/continuous.md. It is stopped by
+  /// what they do not move in any case.
+  bool bullet() const { return bullet_ != 0; }
+  void setBullet(bool bullet) { bullet_ = bullet ? 1 : 0; }
 
   void setUserData(std::uint64_t data) { userData_ = data; }
   std::uint64_t userData() const { return userData_; }
@@ -292,6 +296,7 @@ class Body {
     visit("island", self.island_);
     visit("activity", self.activity_);
     visit("maySleep", self.maySleep_);
+    visit("bullet", self.bullet_);
   }
   /// Computes what follows from the fields.
   void derive();
@@ -395,7 +400,8 @@ class Body {
   std::uint32_t island_ = 0;
   Activity activity_ = Activity::awake;
   std::uint8_t maySleep_ = 1;
-  std::uint8_t unused_[2] = {};
+  std::uint8_t bullet_ = 0;
+  std::uint8_t unused_ = 0;
   // Follows from the state.
   Vector<S> rotation_{S(1), S(0)};
   Scaled<S> inverseMass_{};

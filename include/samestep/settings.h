@@ -33,7 +33,10 @@ template <Scalar S>
 struct Settings {
   SolverKind solver = SolverKind::softStep;
   ContactPrecision precision = ContactPrecision::accurate;
-  std::uint8_t unused[2] = {};
+  /// True if bodies that go far in a step are stopped where they meet something that never moves, or that
+  /// moves by itself, see docs/continuous.md: 0 or 1.
+  std::uint8_t continuous = 1;
+  std::uint8_t unused = 0;
   /// Sequential impulses: how often all contacts are solved in a step, 1 to 1000.
   std::int32_t iterations = 10;
   /// Soft step: how many substeps a step has, 1 to 100. They are for contacts: what nothing touches moves as
@@ -76,6 +79,7 @@ struct Settings {
   static void fields(Self& self, Visitor& visit) {
     visit("solver", self.solver);
     visit("precision", self.precision);
+    visit("continuous", self.continuous);
     visit("iterations", self.iterations);
     visit("substeps", self.substeps);
     visit("collisionPersistence", self.collisionPersistence);

@@ -102,6 +102,9 @@ class Space {
   void setSolver(SolverKind kind);
   /// @throws ValueOutOfRange for a value that names no precision
   void setPrecision(ContactPrecision precision);
+  /// Has steps stop bodies that go far where they meet something, or not: see docs/continuous.md. On at
+  /// first.
+  void setContinuous(bool continuous);
   /// @throws InvalidIter outside [1, 100]
   void setSubsteps(int substeps);
   /// @param hertz    cycles per second, in [0, 1000]; 0: hard contacts that do not push overlaps apart

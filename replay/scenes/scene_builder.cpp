@@ -128,13 +128,14 @@ void SceneBuilder<S>::readGrid(const Cursor& at, const Spawn<S>& body, const std
 template <Scalar S>
 Spawn<S> SceneBuilder<S>::readBody(const Cursor& at) {
   at.allow({"name", "type", "mass", "moment", "rotates", "position", "angle", "velocity", "angularVelocity",
-            "userData", "maySleep", "gravityScale", "linearDamping", "angularDamping", "speedLimit",
+            "userData", "maySleep", "bullet", "gravityScale", "linearDamping", "angularDamping", "speedLimit",
             "spinLimit", "shapes", "grid"});
   Spawn<S> made;
   Body<S>& body = made.body;
   at.optional("rotates", [&](const Cursor& v) {
     if (!v.boolean()) body = Body<S>::nonRotating(S(0));
   });
+  at.optional("bullet", [&](const Cursor& v) { body.setBullet(v.boolean()); });
   at.optional("type", [&](const Cursor& v) {
     const std::string& type = v.text();
     if (type == "static") {

@@ -10,7 +10,9 @@ template <Scalar S>
 void readSettings(Space<S>& space, const Cursor& at) {
   at.allow({"solver", "precision", "gravity", "iterations", "substeps", "damping", "collisionSlop",
             "collisionBias", "collisionPersistence", "contactHertz", "contactDamping", "contactPushSpeed",
-            "contactMargin", "bounceThreshold", "worldExtent", "sleepTimeThreshold", "idleSpeedThreshold"});
+            "contactMargin", "bounceThreshold", "worldExtent", "sleepTimeThreshold", "idleSpeedThreshold",
+            "continuous"});
+  at.optional("continuous", [&](const Cursor& v) { space.setContinuous(v.boolean()); });
   at.optional("solver", [&](const Cursor& v) {
     const std::string& solver = v.text();
     if (solver == "soft step") return space.setSolver(SolverKind::softStep);

@@ -92,6 +92,14 @@ class Trial {
     return add(body, shape, ratio<S>(6, 10));
   }
 
+  /// A free body on its way.
+  BodyId addFlying(const Shape<S>& shape, const Vector<S>& position, const Vector<S>& velocity, S spin) {
+    const BodyId id = addFree(shape, position, S(0));
+    space_.body(id).setVelocity(velocity);
+    space_.body(id).setAngularVelocity(spin);
+    return id;
+  }
+
   /// Makes steps for so long, and stops where `stands` says no, asked after each second.
   template <class Stands>
   bool stand(int seconds, Stands&& stands) {
@@ -199,6 +207,48 @@ bool bulletsHoldAt(const Setting& setting, int speed) {
   });
 }
 
+/// Numbers that look like chance and are the same everywhere.
+class Dice {
+ public:
+  /// A number in [-1, 1], in steps of 2^-10.
+  template <Scalar S>
+  S unit() {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return ratio<S>(static_cast<int>(state_ >> 53) - 1024, 1024);
+  }
+
+ private:
+  std::uint64_t state_ = 5;
+};
+
+/// Bullets of all shapes, with spins up to the limit, in a room of thin walls.
+template <Scalar S>
+bool bulletsStay(const Setting& setting, int speed) {
+  constexpr int kBullets = 48;
+  const S half(4), thin(0x1p-6), whole = half + half;
+  Trial<S> trial(setting, {});
+  for (const S side : {-half, half}) {
+    trial.addStaticBox({side, S(0)}, thin, whole);
+    trial.addStaticBox({S(0), side}, whole, thin);
+  }
+  const Shape<S> shapes[] = {circleShape<S>({}, ratio<S>(1, 10), Vector<S>()),
+                             boxShape<S>({}, ratio<S>(1, 2), ratio<S>(1, 16)),
+                             segmentShape<S>({}, {S(-1) / S(4), S(0)}, {S(1) / S(4), S(0)}, S(0x1p-5)),
+                             boxShape<S>({}, ratio<S>(1, 4), ratio<S>(1, 4), ratio<S>(1, 32))};
+  Dice dice;
+  std::vector<BodyId> bullets;
+  for (int i = 0; i < kBullets; ++i) {
+    const Vector<S> position(S(2) * dice.unit<S>(), S(2) * dice.unit<S>());
+    const Vector<S> velocity(S(speed) * dice.unit<S>(), S(speed) * dice.unit<S>());
+    const S spin = i % 2 == 0 ? S(0) : kMaxAngularSpeed<S> * dice.unit<S>();
+    bullets.push_back(trial.addFlying(shapes[i % 4], position, velocity, spin));
+  }
+  return trial.stand(2, [&] {
+    return std::all_of(bullets.begin(), bullets.end(),
+                       [&](BodyId id) { return within(trial.center(id), half); });
+  });
+}
+
 /// True if a shape may be that of a body that moves.
 bool mayMove(const NastyShape& shape) { return makeNasty<Fixed>(shape).extent() <= Fixed(kMaxDynamicExtent); }
 
@@ -297,6 +347,14 @@ const Ladder kLadders[] = {
      bulletsHoldAt<4>},
     {"bullet-6cm", "m/s that a wall of 6.25 cm stops", kBulletTrial, kBulletFails, kTopSpeed,
      bulletsHoldAt<1>},
+    {"bullets", "m/s of bullets of all shapes in a room of walls of 16 mm",
+     "48 circles, boxes and segments, half of them with spins of up to 256 rad/s, fly about in a room of 8 m "
+     "whose "
+     "walls are 2^-6 m thick",
+     "after either of 2 s the centre of any is outside of it", kTopSpeed,
+     [](const Setting& setting, int rung) {
+       return inScalarOf(setting, [&](auto scalar) { return bulletsStay<decltype(scalar)>(setting, rung); });
+     }},
     {"walker", "speeds and floors, in turn, that a walker crosses",
      "a box of 1 m that may not turn walks without friction over 12 m of flush boxes, then of segments, of "
      "1 m each, at 1, 2, 3, 4, 6, 8, 12 and 16 m/s",

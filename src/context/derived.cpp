@@ -80,6 +80,7 @@ void Derived<S>::copyFrom(const Derived& other) {
   staticTree.copyFrom(other.staticTree);
   dynamicTree.copyFrom(other.dynamicTree);
   makeRoom(touched, firstShape.size());
+  bulks.assign(firstShape.size(), {});
   usePlanes();
   cached = true;
 }
@@ -166,7 +167,8 @@ std::uint64_t Derived<S>::bytes() const {
 template <Scalar S>
 void Derived<S>::growBodies(std::uint32_t slots) {
   // Each body is touched once. All have room before any grows.
-  makeRoomForEach(slots, touched, poses, firstShape, lastShape, isTouched);
+  makeRoomForEach(slots, touched, poses, firstShape, lastShape, isTouched, bulks);
+  bulks.resize(slots);
   poses.resize(slots);
   firstShape.resize(slots, kNone);
   lastShape.resize(slots, kNone);
@@ -208,6 +210,8 @@ void Derived<S>::reserveFor(const Shape<S>& shape) {
 template <Scalar S>
 void Derived<S>::touch(std::uint32_t body) {
   if (body >= isTouched.size() || isTouched[body] != 0) return;
+  // Its centre of mass may be another one.
+  bulks[body] = {};
   isTouched[body] = 1;
   touched.push_back(body);
 }
@@ -242,6 +246,7 @@ void Derived<S>::linkShape(std::uint32_t body, std::uint32_t shape) {
   nextShape[shape] = link;
   link = shape;
   if (nextShape[shape] == kNone) lastShape[body] = shape;
+  bulks[body] = {};
 }
 
 template <Scalar S>
@@ -252,6 +257,7 @@ void Derived<S>::unlinkShape(std::uint32_t body, std::uint32_t shape) {
   (before == kNone ? firstShape[body] : nextShape[before]) = nextShape[shape];
   if (lastShape[body] == shape) lastShape[body] = before;
   nextShape[shape] = kNone;
+  bulks[body] = {};
 }
 
 template <Scalar S>
@@ -278,6 +284,25 @@ template <Scalar S>
 void Derived<S>::takeTraits(std::uint32_t index, const Shape<S>& shape) {
   traits[index] = ShapeTraits<S>::of(shape, surfaces.number(Surface<S>::of(shape)));
   around[index] = CircleAround<S>::of(shape);
+  bulks[shape.body().index] = {};
+}
+
+/// A turn moves the surface of a circle along itself, and nothing but its centre.
+template <Scalar S>
+BodyBulk<S> Derived<S>::findBulk(const WorldState<S>& world, std::uint32_t body) const {
+  const Vector<S>& center = world.bodies.valueAt(body).centerOfMass();
+  BodyBulk<S> bulk{S(kMaxExtent), S(0), S(0), S(0)};
+  for (std::uint32_t i = firstShape[body]; i != kNone; i = nextShape[i]) {
+    const bool round = placed[i].type == ShapeType::circle;
+    bulk.room = min(bulk.room, max(around[i].thickness * ratio<S>(1, 2), kLeastRoom<S>));
+    bulk.reach = max(bulk.reach, length(around[i].center - center) + (round ? S(0) : around[i].radius));
+  }
+  const S half = ratio<S>(1, 2);
+  bulk.way = bulk.room * half;
+  // A turn by more than 1 counts as far wherever it moves anything.
+  const S turn = bulk.reach > bulk.way ? bulk.way / bulk.reach : S(1);
+  bulk.turn = bulk.reach == S(0) ? kMaxAngularSpeed<S> : turn * half;
+  return bulk;
 }
 
 /// Forgets the surfaces that shapes no longer have.
@@ -311,6 +336,7 @@ template <Scalar S>
 void Derived<S>::compute(const WorldState<S>& world) {
   makeRoom(touched, world.bodies.slots());
   poses.assign(world.bodies.slots(), {});
+  bulks.assign(world.bodies.slots(), {});
   firstShape.assign(world.bodies.slots(), kNone);
   lastShape.assign(world.bodies.slots(), kNone);
   isTouched.assign(world.bodies.slots(), 0);

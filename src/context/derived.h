@@ -91,9 +91,10 @@ template <Scalar S>
 struct CircleAround {
   Vector<S> center{};
   S radius{};
+  S thickness{};  ///< Half of what the shape measures where it is thinnest, rounding included, m.
 
   static CircleAround of(const Shape<S>& shape) {
-    return {shape.massInfo().centroid, radiusAround(shape.massInfo().centroid, shape)};
+    return {shape.massInfo().centroid, radiusAround(shape.massInfo().centroid, shape), thicknessOf(shape)};
   }
 
  private:
@@ -105,6 +106,36 @@ struct CircleAround {
     }
     return most + shape.radius();
   }
+  /// The least width of a polygon is across one of its edges.
+  static S thicknessOf(const Shape<S>& shape) {
+    if (shape.type() != ShapeType::poly) return shape.radius();
+    const auto vertices = shape.vertices();
+    S least = S(2 * kMaxExtent);
+    Vector<S> from = vertices.back();
+    for (const Vector<S>& to : vertices) {
+      const Vector<S> inward = perp(normalize(to - from));
+      S width(0);
+      for (const Vector<S>& vertex : vertices) width = max(width, dot(vertex - from, inward));
+      least = min(least, width);
+      from = to;
+    }
+    return least * ratio<S>(1, 2) + shape.radius();
+  }
+};
+
+/// The least way that counts as far for shapes without any thickness, m.
+template <Scalar S>
+inline constexpr S kLeastRoom = S(0x1p-10);
+
+/// Bulk of a body: the way on which it meets whatever is in it, without being looked at in between.
+template <Scalar S>
+struct BodyBulk {
+  S room{-1};  ///< Such a way, m; negative while it is not known.
+  S reach{};   ///< From the centre of mass, no point that a turn moves is farther, m.
+  S way{};     ///< Half of the room, m.
+  S turn{};    ///< Half of a turn that moves no point by more than that, rad.
+
+  bool isKnown() const { return room >= S(0); }
 };
 
 /// The planes of shapes as their bodies hold them. Shapes of one geometry in a row, as in most worlds, share
@@ -177,6 +208,8 @@ struct Derived {
   std::vector<PlacedShape<S>> placed;
   std::vector<ShapeTraits<S>> traits;
   std::vector<CircleAround<S>> around;
+  // Bulk of each body, found when it is asked for.
+  std::vector<BodyBulk<S>> bulks;
   Surfaces<S> surfaces;
   // This is true if the surfaces in all pairs that touched in the last step are those of the shapes.
   bool surfacesKnown = false;
@@ -301,6 +334,13 @@ struct Derived {
   bool isCompound(std::uint32_t body) const { return firstShape[body] != lastShape[body]; }
   bool hasCompound(const WorldState<S>& world);
 
+  /// Bulk of a body that has shapes. Writes to nothing but that.
+  const BodyBulk<S>& bulkOf(const WorldState<S>& world, std::uint32_t body) {
+    if (!bulks[body].isKnown()) [[unlikely]]
+      bulks[body] = findBulk(world, body);
+    return bulks[body];
+  }
+
   /// Notes that a body may have been moved by hand.
   void touch(std::uint32_t body);
   void touchAll(const WorldState<S>& world) {
@@ -322,6 +362,7 @@ struct Derived {
   bool compoundKnown = false;
 
  private:
+  BodyBulk<S> findBulk(const WorldState<S>& world, std::uint32_t body) const;
   /// Points each placed shape to its planes.
   void usePlanes();
   void countSurfaces();

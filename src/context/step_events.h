@@ -40,6 +40,36 @@ struct ContactLists {
   }
 };
 
+/// Bodies of a step that go far in it, and the places where all that move began.
+template <Scalar S>
+struct FastBodies {
+  struct Start {
+    Vector<S> center{};
+    S angle{};
+  };
+
+  /// Starts by body slot, of bodies that a step moves.
+  std::vector<Start> starts;
+  /// Motions by body slot: kStays, kMoves or kGoesFar.
+  std::vector<std::uint8_t> motions;
+  static constexpr std::uint8_t kStays = 0, kMoves = 1, kGoesFar = 2;
+  /// False where nothing is to be stopped: then nothing is noted.
+  bool watched = false;
+
+  void begin(const WorldState<S>& world) {
+    watched = world.settings.continuous != 0;
+    if (!watched) return;
+    starts.resize(world.bodies.slots());
+    motions.assign(world.bodies.slots(), kStays);
+  }
+  bool isFast(std::uint32_t index) const { return motions[index] == kGoesFar; }
+  /// Notes where a body is before it is moved.
+  void noteStart(std::uint32_t index, const Body<S>& body) {
+    starts[index] = {body.worldCenter(), body.angle()};
+    motions[index] = kMoves;
+  }
+};
+
 /// Events of a step: what it tells beside the state, read after it.
 template <Scalar S>
 struct StepEvents {
@@ -51,8 +81,12 @@ struct StepEvents {
   std::vector<JointEvent<S>> joints;
   /// Bits of Body::Held that the step under way noted, by body slot.
   std::vector<std::uint8_t> held;
+  FastBodies<S> fast;
 
-  void begin(const WorldState<S>& world) { held.assign(world.bodies.slots(), 0); }
+  void begin(const WorldState<S>& world) {
+    held.assign(world.bodies.slots(), 0);
+    fast.begin(world);
+  }
   /// Lists what was held, by body id.
   /// @param moved  the slots of those that the step moved
   void listRange(const WorldState<S>& world, const std::vector<std::uint32_t>& moved) {

@@ -70,7 +70,8 @@ void Body<S>::deriveMass() {
 
 template <Scalar S>
 bool Body<S>::wellFormed() const {
-  if (type_ > BodyType::staticBody || rotates_ > 1 || !restsWell() || !movesWell()) return false;
+  if (type_ > BodyType::staticBody || rotates_ > 1 || bullet_ > 1) return false;
+  if (!restsWell() || !movesWell()) return false;
   if (!(mass_ == S(0) || (mass_ >= kMinMass<S> && mass_ <= kMaxMass<S>))) return false;
   // Shapes of any supported size and mass add up to no more, with room to spare.
   const Scaled<S> zero{};

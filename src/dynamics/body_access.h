@@ -66,6 +66,13 @@ struct BodyAccess {
   static std::uint8_t holdMoved(Body<S>& body, const Vector<S>& by, S angle, S extent) {
     return body.holdMoved(by, angle, extent);
   }
+  /// Puts a body where a motion took it.
+  static void setPose(Body<S>& body, const Vector<S>& center, S angle) {
+    body.center_ = center;
+    body.angle_ = angle;
+    const SinCos<S> turn = sincos(angle);
+    body.rotation_ = {turn.cos, turn.sin};
+  }
   static void clearForces(Body<S>& body) {
     body.force_ = {};
     body.torque_ = S(0);

@@ -29,9 +29,10 @@ struct FieldFlaw {
 
 /// Fields and sections that worlds have since format 2.
 constexpr const char* kSince2[] = {
-    "sleepTimeThreshold", "idleSpeedThreshold", "restTime",  "island",   "activity",         "maySleep",
-    "resting pair",       "rotationA",          "rotationB", "joint",    "gravityScale",     "linearDamping",
-    "angularDamping",     "speedLimit",         "spinLimit", "material", "rollingResistance"};
+    "sleepTimeThreshold", "idleSpeedThreshold", "restTime",       "island",     "activity",
+    "maySleep",           "resting pair",       "rotationA",      "rotationB",  "joint",
+    "gravityScale",       "linearDamping",      "angularDamping", "speedLimit", "spinLimit",
+    "material",           "rollingResistance",  "bullet",         "continuous"};
 
 /// Reads the fields and sections of one world.
 template <Scalar S>

@@ -22,9 +22,9 @@ template <Scalar S>
 const char* flawOfSettings(const Settings<S>& settings) {
   const auto in = [](S value, S low, S high) { return value >= low && value <= high; };
   const bool both = settings.solver <= SolverKind::softStep && settings.precision <= ContactPrecision::fast &&
-                    within(settings.gravity, kMaxAcceleration<S>) && in(settings.damping, S(0), S(1)) &&
-                    settings.worldExtent > S(0) && settings.worldExtent <= kMaxWorldExtent<S> &&
-                    flawlessRest(settings);
+                    settings.continuous <= 1 && within(settings.gravity, kMaxAcceleration<S>) &&
+                    in(settings.damping, S(0), S(1)) && settings.worldExtent > S(0) &&
+                    settings.worldExtent <= kMaxWorldExtent<S> && flawlessRest(settings);
   const bool sequential = settings.iterations >= 1 && settings.iterations <= 1000 &&
                           in(settings.collisionSlop, S(0), S(256)) && in(settings.collisionBias, S(0), S(1));
   const S fastest = kMaxSpeed<S>;

@@ -33,6 +33,7 @@ void check(const Settings<S>& s) {
   require<Fault::InvalidIter>(s.substeps >= 1 && s.substeps <= 100, "settings of a Space: substeps are ",
                               s.substeps, ", allowed are 1 to 100");
   requireIn<int>("solver is number ", static_cast<int>(s.solver), 0, static_cast<int>(SolverKind::softStep));
+  requireIn<int>("continuous is ", s.continuous, 0, 1);
   requireIn<int>("precision is number ", static_cast<int>(s.precision), 0,
                  static_cast<int>(ContactPrecision::fast));
   require<Fault::ValueOutOfRange>(within(s.gravity, kMaxAcceleration<S>), "settings of a Space: gravity is ",
@@ -90,6 +91,11 @@ void Space<S>::setIterations(int iterations) {
 template <Scalar S>
 void Space<S>::setPrecision(ContactPrecision precision) {
   setSettings(with(state_.settings, &Settings<S>::precision, precision));
+}
+
+template <Scalar S>
+void Space<S>::setContinuous(bool continuous) {
+  setSettings(with(state_.settings, &Settings<S>::continuous, continuous ? 1 : 0));
 }
 
 template <Scalar S>

@@ -40,13 +40,14 @@ std::span<const typename Step<S>::Line> Step<S>::lines(SolverKind solver) {
   using C = StepContext<S>;
   static constexpr Line kSequentialImpulses[] = {
       {Stage::integratePositions, [](Step&, C& step) { Integrate<S>::positions(step); }},
-      {Stage::updateShapes, [](Step& stages, C& step) { stages.placeShapes.run(step); }},
+      {Stage::updateShapes, placeAndStop},
       {Stage::findPairs, [](Step& stages, C& step) { stages.meet(step); }},
       {Stage::collide, [](Step& of, C& step) { of.updateContacts.run(step, of.findPairs.overlapping()); }},
       {Stage::preStep, [](Step& stages, C& step) { stages.impulses.prepare(step); }},
       {Stage::integrateVelocities, [](Step&, C& step) { Integrate<S>::velocities(step); }},
       {Stage::solve, [](Step& stages, C& step) { stages.impulses.solve(step); }},
-      {Stage::callbacks, [](Step& stages, C& step) { tellResults(step), stages.islands.fallAsleep(step); }},
+      {Stage::callbacks,
+       [](Step& stages, C& step) { tellResults(stages, step), stages.islands.fallAsleep(step); }},
   };
   static constexpr Line kSoftStep[] = {
       // It ends with all shapes placed: only those of bodies moved by hand since then were not, and are by
@@ -57,15 +58,23 @@ std::span<const typename Step<S>::Line> Step<S>::lines(SolverKind solver) {
       {Stage::preStep, [](Step& stages, C& step) { stages.soft.prepare(step); }},
       {Stage::solve, [](Step& stages, C& step) { stages.soft.solve(step), UpdateContacts<S>::settle(step); }},
       {Stage::integratePositions, [](Step& stages, C& step) { stages.soft.finish(step); }},
-      {Stage::updateShapes, [](Step& stages, C& step) { stages.placeShapes.run(step); }},
-      {Stage::callbacks, [](Step& stages, C& step) { tellResults(step), stages.islands.fallAsleep(step); }},
+      {Stage::updateShapes, placeAndStop},
+      {Stage::callbacks,
+       [](Step& stages, C& step) { tellResults(stages, step), stages.islands.fallAsleep(step); }},
   };
   if (solver == SolverKind::softStep) return kSoftStep;
   return kSequentialImpulses;
 }
 
 template <Scalar S>
-void Step<S>::tellResults(StepContext<S>& step) {
+void Step<S>::placeAndStop(Step& stages, StepContext<S>& step) {
+  stages.placeShapes.run(step);
+  stages.stopAtImpacts.run(step);
+}
+
+template <Scalar S>
+void Step<S>::tellResults(Step& stages, StepContext<S>& step) {
+  stages.stopAtImpacts.tellSeen(step);
   ContactCallbacks<S>::postSolve(step);
   TellJoints<S>::run(step);
   step.events.listRange(step.state, step.derived.active);
@@ -102,6 +111,7 @@ bool Step<S>::run(StepContext<S>& step) {
   // Position functions ask about the world before any of them moved a body; the soft step begins with it:
   // nothing but what was moved by hand has to be placed.
   if (step.isSoft() || !step.wiring.positionFuncs.empty()) step.derived.refresh(step.state);
+  if (step.events.fast.watched) step.derived.ensure(step.state);
   const KeepPlaced keep(step.derived);
   const bool made = runLines(step);
   change.done();
@@ -141,6 +151,7 @@ template <Scalar S>
 void Step<S>::takeBack(StepContext<S>& step) {
   step.state.timeStep = step.dtBefore;
   --step.state.stamp;
+  stopAtImpacts.takeBack(step);
   if (keptBodies_) step.state.bodies = bodiesBefore_;
   if (keptPairs_) {
     step.state.pairs = pairsBefore_;

@@ -10,6 +10,7 @@
 #include "broad_phase/stages/place_shapes.h"
 #include "contacts/stages/update_contacts.h"
 #include "context/step_context.h"
+#include "continuous/stages/stop_at_impacts.h"
 #include "islands/stages/islands.h"
 #include "solver/sequential_impulse/stages/impulse_stages.h"
 #include "solver/soft_step/stages/soft_stages.h"
@@ -38,6 +39,7 @@ struct Step {
   FindPairs<S> findPairs;
   Islands<S> islands;
   UpdateContacts<S> updateContacts;
+  StopAtImpacts<S> stopAtImpacts;
   ImpulseStages<S> impulses;
   SoftStages<S> soft;
 
@@ -54,7 +56,8 @@ struct Step {
     Derived<S>& derived_;
   };
 
-  static void tellResults(StepContext<S>& step);
+  static void placeAndStop(Step& stages, StepContext<S>& step);
+  static void tellResults(Step& stages, StepContext<S>& step);
   void meet(StepContext<S>& step);
   [[nodiscard]] bool runLines(StepContext<S>& step);
   void keepBefore(const StepContext<S>& step);

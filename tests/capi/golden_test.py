@@ -178,7 +178,8 @@ class Scene:
                 "collisionPersistence": "collision_persistence", "contactHertz": "contact_hertz",
                 "contactDamping": "contact_damping", "contactPushSpeed": "contact_push_speed",
                 "contactMargin": "contact_margin", "bounceThreshold": "bounce_threshold", "worldExtent": "world_extent",
-                "sleepTimeThreshold": "sleep_time_threshold", "idleSpeedThreshold": "idle_speed_threshold"}
+                "sleepTimeThreshold": "sleep_time_threshold", "idleSpeedThreshold": "idle_speed_threshold",
+                "continuous": "continuous"}
     COMMANDS = {"impulse": 0, "force": 1, "velocity": 2, "angularVelocity": 3, "position": 4, "angle": 5, "remove": 7}
 
     def __init__(self, library, scene, scalar):
@@ -252,6 +253,7 @@ class Scene:
         made = self.library.new("body_def", position=self.vector(position))
         made.type = ["dynamic", "kinematic", "static"].index(body.get("type", "dynamic"))
         made.rotates = 1 if body.get("rotates", True) else 0
+        made.bullet = 1 if body.get("bullet", False) else 0
         for key, field in (("mass", "mass"), ("moment", "moment"), ("angle", "angle"),
                            ("angularVelocity", "angular_velocity"), ("userData", "user_data")):
             if key in body:

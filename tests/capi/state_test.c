@@ -171,9 +171,11 @@ static void test_bodies(int32_t scalar) {
   samestep_body_state state;
   check_status(samestep_body_set_velocity(world, body, 3, -4), SAMESTEP_OK, "velocity", __LINE__);
   check_status(samestep_body_set_user_data(world, body, 99), SAMESTEP_OK, "data", __LINE__);
+  check_status(samestep_body_set_bullet(world, body, 1), SAMESTEP_OK, "bullet", __LINE__);
   check_status(samestep_body_apply_force(world, body, 1, 0, 1, 3), SAMESTEP_OK, "force", __LINE__);
   check_status(samestep_body_get(world, body, &state), SAMESTEP_OK, "get", __LINE__);
-  check(state.id == body && state.user_data == 99 && state.type == SAMESTEP_DYNAMIC, "what it is", __LINE__);
+  check(state.id == body && state.user_data == 99 && state.bullet == 1 && state.type == SAMESTEP_DYNAMIC,
+        "what it is", __LINE__);
   check(state.position.x == 1 && state.position.y == 2 && state.velocity.y == -4, "where it is", __LINE__);
   check(state.mass == 1 && state.force.x == 1 && state.torque == -1, "what acts on it", __LINE__);
   check(state.kinetic_energy == 12.5, "what energy it has", __LINE__);

@@ -49,15 +49,32 @@ void Integrate<S>::callVelocityFunc(StepContext<S>& step, std::uint32_t index, S
 }
 
 template <Scalar S>
+void Integrate<S>::noteGoesFar(StepContext<S>& step, std::uint32_t index, const Body<S>& body) {
+  FastBodies<S>& fast = step.events.fast;
+  const auto& start = fast.starts[index];
+  const S half = ratio<S>(1, 2);
+  const bool jumped = body.positionFunc() != 0 &&
+                      (!within(body.worldCenter() - start.center, kMaxSpeed<S>) ||
+                       !within(body.angle() * half - start.angle * half, kMaxAngularSpeed<S> * half));
+  if (jumped) {
+    fast.noteStart(index, body);
+  } else {
+    fast.motions[index] = FastBodies<S>::kGoesFar;
+  }
+}
+
+template <Scalar S>
 void Integrate<S>::positions(StepContext<S>& step) {
   auto& bodies = step.state.bodies;
   for (const std::uint32_t i : step.derived.active) {
     Body<S>& body = bodies.valueAt(i);
+    if (step.events.fast.watched) step.events.fast.noteStart(i, body);
     if (body.positionFunc() != 0) [[unlikely]] {
       callPositionFunc(step, i);
     } else {
       step.events.held[i] |= BodyAccess<S>::holdPosition(body, step.dt, step.state.settings.worldExtent);
     }
+    if (step.events.fast.watched) noteFast(step, i, body);
   }
 }
 

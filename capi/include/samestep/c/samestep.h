@@ -217,6 +217,8 @@ typedef struct samestep_settings {
   double world_extent;         /* Bodies are held within it along each axis, m, above 0, at most 2^20. */
   double sleep_time_threshold; /* Rest after which islands sleep, s, 0 to 2^10; 0 at first: none does. */
   double idle_speed_threshold; /* Bodies that are no faster are at rest, m/s, 0 to 2^10; 0.05 at first. */
+  int32_t continuous;          /* 0: bodies that go far in a step are not stopped on their way; 1 at first. */
+  int32_t reserved;            /* 0 */
 } samestep_settings;
 
 /* What a new world is to be. */
@@ -332,7 +334,7 @@ typedef struct samestep_body_def {
   uint32_t version;
   int32_t type;    /* SAMESTEP_DYNAMIC at first. */
   int32_t rotates; /* 0 for a dynamic body that no impulse turns; 1 at first. */
-  int32_t reserved; /* 0 */
+  int32_t bullet;  /* 1: also stopped by what contacts move, where it goes far in a step; 0 at first. */
   /* 0: the world gives one. Worlds whose ids are all given are the same bit by bit whatever the order in
    * which objects came and went; see samestep_make_id. The index is below 2^16. */
   samestep_body_id id;
@@ -369,6 +371,8 @@ typedef struct samestep_body_state {
   uint32_t velocity_function;
   int32_t sleeps;         /* 1 while steps leave it alone. */
   int32_t may_sleep;      /* 0 of a body that keeps its island awake. */
+  int32_t bullet;         /* 1: stopped by what contacts move, too, where it goes far in a step. */
+  int32_t reserved;       /* 0 */
   double gravity_scale;   /* Factor of gravity in its acceleration. */
   double linear_damping;  /* 1/s */
   double angular_damping; /* 1/s */
@@ -470,6 +474,9 @@ SAMESTEP_C_API samestep_status samestep_body_set_limits(samestep_world* world, s
 /* Whether impulses and torques turn the body: 1 or 0. */
 SAMESTEP_C_API samestep_status samestep_body_set_rotates(samestep_world* world, samestep_body_id body,
                                                          int32_t rotates);
+/* 1: where it goes far in a step the body is stopped by what contacts move, too; 0: only by the rest. */
+SAMESTEP_C_API samestep_status samestep_body_set_bullet(samestep_world* world, samestep_body_id body,
+                                                        int32_t bullet);
 /* The numbers of the functions that move the body and change its velocity; 0: the engine's own. */
 SAMESTEP_C_API samestep_status samestep_body_set_functions(samestep_world* world, samestep_body_id body,
                                                            uint32_t position_function,

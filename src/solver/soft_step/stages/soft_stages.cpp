@@ -316,6 +316,7 @@ void SoftStages<S>::finish(StepContext<S>& step, std::uint32_t begin, std::uint3
       const std::uint32_t i = step.derived.active[number];
       Body<S>& body = bodies.valueAt(i);
       const std::uint32_t index = solverIndex_[i];
+      if (step.events.fast.watched) step.events.fast.noteStart(i, body);
       const SoftMotion<S> motion = (index & kFree) != 0 ? soft_.free[index & ~kFree] : solver.motion(index);
       if (body.isDynamic()) {
         // The substeps hold velocities, too.
@@ -329,6 +330,7 @@ void SoftStages<S>::finish(StepContext<S>& step, std::uint32_t begin, std::uint3
         held[i] |= BodyAccess<S>::holdMoved(body, {motion.moved[0], motion.moved[1]}, motion.moved[2],
                                             step.state.settings.worldExtent);
       }
+      if (step.events.fast.watched) Integrate<S>::noteFast(step, i, body);
     }
   });
 }
