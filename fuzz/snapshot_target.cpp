@@ -63,6 +63,7 @@ void loadWhole(Bytes bytes, OtherRevision otherRevision) {
     return;
   }
   expect(flawOf(space.state(), kFuzzLimits) == nullptr, "what is loaded is a world that a Space can have");
+  if (snapshotInfo(bytes).version < kSnapshotVersion) return;
   std::vector<std::uint8_t> again(bytes.size());
   expect(saveSnapshot(space, std::span<std::uint8_t>(again)) == bytes.size(),
          "a snapshot is saved again in as many bytes");

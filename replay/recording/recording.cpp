@@ -539,9 +539,11 @@ bool RecordingReader<S>::isWorld(std::size_t index, const WorldState<S>& world) 
   require<Fault::IndexOutOfBounds>(index < keyframes_.size());
   std::vector<std::uint8_t> encoded;
   encodeWorld(world, encoded);
-  if (version_ == kOldestRecordingVersion) {
-    const auto stands = bytes_.subspan(static_cast<std::size_t>(kWorldAt));
-    return encoded.size() <= stands.size() && std::equal(encoded.begin(), encoded.end(), stands.begin());
+  if (worldFormat() < kWorldFormat) {
+    // No world is written as these are any more.
+    std::vector<std::uint8_t> again;
+    encodeWorld(this->world(index), again);
+    return encoded == again;
   }
   const RecordingSection section = readSection(bytes_, keyframes_[index].offset, false);
   std::vector<std::uint8_t> unpacked;

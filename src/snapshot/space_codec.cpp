@@ -7,6 +7,7 @@
 
 #include "base/require_ieee.h"
 #include "snapshot/world_check.h"
+#include "snapshot/world_formats.h"
 #include "state/canonical_reader.h"
 #include "state/compact.h"
 
@@ -26,13 +27,6 @@ struct FieldFlaw {
   template <class T>
   void operator()(const Section&, const T&) {}
 };
-
-/// Fields and sections that worlds have since format 2.
-constexpr const char* kSince2[] = {
-    "sleepTimeThreshold", "idleSpeedThreshold", "restTime",       "island",     "activity",
-    "maySleep",           "resting pair",       "rotationA",      "rotationB",  "joint",
-    "gravityScale",       "linearDamping",      "angularDamping", "speedLimit", "spinLimit",
-    "material",           "rollingResistance",  "bullet",         "continuous"};
 
 /// Reads the fields and sections of one world.
 template <Scalar S>

@@ -64,7 +64,7 @@ static void refuse(samestep_world* world, samestep_recorder* recorder) {
   check_status(samestep_recorder_apply(recorder, &command, NULL), SAMESTEP_BODY_NOT_FOUND, "nothing",
                __LINE__);
   check_status(samestep_world_apply(world, &command, NULL), SAMESTEP_BODY_NOT_FOUND, "nothing", __LINE__);
-  command.kind = 9;
+  command.kind = 99;
   check_status(samestep_recorder_apply(recorder, &command, NULL), SAMESTEP_UNKNOWN_VALUE, "kind", __LINE__);
   command.kind = SAMESTEP_SPAWN;
   check_status(samestep_recorder_apply(recorder, &command, NULL), SAMESTEP_NULL_ARGUMENT, "spawn", __LINE__);

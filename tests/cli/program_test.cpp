@@ -186,7 +186,7 @@ TEST_F(ProgramTest, ClaimsAreRecordedToldAndChecked) {
   EXPECT_THAT(run("verify '" + file("a.rec") + "'").out, HasSubstr(", 1 claim holds"));
   const Outcome info = run("info --keyframes '" + file("a.rec") + "'");
   EXPECT_EQ(info.code, 0);
-  for (const char* told : {"format version 3", "9 ticks of 0.01", "keyframes: 1,", "note level: one",
+  for (const char* told : {"format version 4", "9 ticks of 0.01", "keyframes: 1,", "note level: one",
                            "claim after tick 9: samestep.bodies is "}) {
     EXPECT_THAT(info.out, HasSubstr(told));
   }

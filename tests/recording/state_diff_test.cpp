@@ -74,7 +74,7 @@ TYPED_TEST(StateDiffTest, TellsOfEachSection) {
     if (name.empty()) break;
     EXPECT_FALSE(differences(space.state(), changed).empty()) << name;
   }
-  EXPECT_EQ(place, 9);
+  EXPECT_EQ(place, 10);
 }
 
 // They tell which ids come next.

@@ -78,7 +78,7 @@ TYPED_TEST(SectionsTest, EachSectionHasALimitOfItsOwn) {
     if constexpr (requires { section.limit; }) limits.*section.limit = ++sections;
   };
   WorldState<S>::sections(count, this->space_.state());
-  EXPECT_EQ(sections, 5u);
+  EXPECT_EQ(sections, 6u);
   std::uint32_t place = 0;
   const auto compare = [&](const auto& section, const auto&) {
     if constexpr (requires { section.limit; }) {

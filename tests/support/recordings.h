@@ -7,6 +7,7 @@
 
 #include <samestep/named_handlers.h>
 #include <samestep/recorder.h>
+#include "support/old_world.h"
 #include "support/recording_sections.h"
 #include "support/world.h"
 
@@ -23,7 +24,8 @@ Bytes asVersion2(const Bytes& bytes) {
   Bytes old(bytes.begin(), bytes.begin() + by_hand::kHeaderBytes);
   old[8] = 2;
   RecordingReader<S> reader(bytes);
-  encodeWorld(reader.initialWorld(), old);
+  OldWorldWriter write(old);
+  WorldState<S>::sections(write, reader.initialWorld());
   by_hand::addNumber(old, reader.initialHash(), 8);
   for (RecordingItem item = reader.next(); item != RecordingItem::end; item = reader.next()) {
     const auto from = reader.items().begin();
