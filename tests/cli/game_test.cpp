@@ -85,7 +85,7 @@ TEST_F(GameTest, WithoutTheGameAnErrorNamesTheCallback) {
   write("a.rec", match(1));
   const Outcome outcome = run(SAMESTEP_PROGRAM, "verify '" + file("a.rec") + "'");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.said, HasSubstr("no handler is registered under 1000"));
+  EXPECT_THAT(outcome.said, HasSubstr("its handlers need one registered under 1000"));
 }
 
 TEST_F(GameTest, AMainOfItsOwnAndAPlugInVerifyTheSame) {
