@@ -67,7 +67,8 @@ void packetsOfABundle(Span bytes) {
   std::size_t at = 0;
   std::array<std::uint8_t, kMaxDatagram> bundle;
   while (const std::uint32_t size = queue.take(bundle)) {
-    lockstep::BundleReader again(std::span(bundle).first(size));
+    const std::span<const std::uint8_t> whole(bundle);
+    lockstep::BundleReader again(whole.first(size));
     while (const std::uint32_t length = again.next(seat, packet)) {
       const bool same = at < packets.size() && packets[at].first == seat &&
                         packets[at].second.size() == length &&
