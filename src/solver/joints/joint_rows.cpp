@@ -242,8 +242,8 @@ class RowMaker {
     const S xy = -dot(r.momentA * armA_.x, armA_.y, r.momentB * armB_.x, armB_.y);
     const Vector<S> n = principal(xx, xy, yy);
     for (const Vector<S>& direction : {n, perp(n)}) {
+      // A greatest force bounds both rows together: see JointSolver::solveJoint.
       Row& row = along(kKeptPoint, direction, armA_);
-      bound(row, work_.forceMost);
       aim(row);
       take(row, dot(direction, work_.kept.linear));
     }
