@@ -35,7 +35,7 @@ struct Settings {
   ContactPrecision precision = ContactPrecision::accurate;
   /// True if bodies that go far in a step are stopped where they meet something that never moves, or that
   /// moves by itself, see docs/continuous.md: 0 or 1.
-  std::uint8_t continuous = 1;
+  std::uint8_t continuous = 0;
   std::uint8_t unused = 0;
   /// Sequential impulses: how often all contacts are solved in a step, 1 to 1000.
   std::int32_t iterations = 10;
