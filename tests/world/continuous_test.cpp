@@ -329,6 +329,24 @@ TYPED_TEST(ContinuousTest, HandlersSayWhetherAWallHolds) {
   }
 }
 
+TYPED_TEST(ContinuousTest, BodiesThatAJointKeepsFromCollidingPassEachOther) {
+  using S = TypeParam;
+  for (const SolverKind solver : kSolvers) {
+    for (const bool collides : {true, false}) {
+      Space<S> space;
+      space.setSolver(solver);
+      const BodyId post = space.add(Body<S>::fixedInPlace());
+      space.add(segmentShape<S>(post, {S(3), S(-1)}, {S(3), S(1)}, S(0x1p-6)));
+      const BodyId ball = TestFixture::addBall(space, {}, {S(600), S(0)}, ratio<S>(1, 8));
+      Joint<S> rope = ropeJoint<S>(post, ball, {}, {}, S(0), S(1000));
+      rope.collideConnected = collides ? 1 : 0;
+      space.add(rope);
+      for (int tick = 0; tick < 3; ++tick) space.step(ratio<S>(1, 60));
+      EXPECT_EQ(space.body(ball).position().x < S(3), collides);
+    }
+  }
+}
+
 // A body that slides or rolls fast in touch with a floor loses no time on it, nor at the edges of its tiles.
 TYPED_TEST(ContinuousTest, AFloorDoesNotStopWhatRollsFastOnIt) {
   using S = TypeParam;

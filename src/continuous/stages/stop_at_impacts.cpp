@@ -94,6 +94,7 @@ void StopAtImpacts<S>::run(StepContext<S>& step) {
   const std::vector<std::uint8_t>& motions = step.events.fast.motions;
   if (!step.events.fast.watched) return;
   if (std::find(motions.begin(), motions.end(), FastBodies<S>::kGoesFar) == motions.end()) return;
+  step.derived.findKeptApart(step.state);
   takeMovers(step);
   takeSubjects(step);
   for (Subject& subject : subjects_) follow(step, subject);
@@ -277,6 +278,7 @@ void StopAtImpacts<S>::meet(StepContext<S>& step, const Subject& subject, const 
   const Derived<S>& derived = step.derived;
   const ShapeTraits<S>&mine = derived.traits[own], &theirs = derived.traits[other];
   if (theirs.body == subject.body || !mayCollide(mine, theirs)) return;
+  if (!step.state.joints.empty() && derived.areKeptApart(mine.body, theirs.body)) return;
   if (holds(ridden_, theirs.body) || holds(refused_, keyOf(own, other))) return;
   ++tests_;
   const bool stays = derived.poses[theirs.body].type == BodyType::staticBody;
