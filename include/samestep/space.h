@@ -102,7 +102,7 @@ class Space {
   void setSolver(SolverKind kind);
   /// @throws ValueOutOfRange for a value that names no precision
   void setPrecision(ContactPrecision precision);
-  /// Has steps stop bodies that go far where they meet something, or not: see docs/continuous.md. On at
+  /// Has steps stop bodies that go far where they meet something, or not: see docs/continuous.md. Off at
   /// first.
   void setContinuous(bool continuous);
   /// @throws InvalidIter outside [1, 100]

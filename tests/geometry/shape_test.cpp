@@ -154,8 +154,8 @@ TYPED_TEST(ShapeTest, EveryFieldIsVisitedByName) {
     names.insert(name);
     ++count;
   });
-  EXPECT_EQ(names.size(), 18u);
-  EXPECT_EQ(count, 17 + 4);  // Four vertices.
+  EXPECT_EQ(names.size(), 20u);
+  EXPECT_EQ(count, 19 + 4);  // Four vertices.
 }
 
 TYPED_TEST(ShapeTest, ExtentReachesTheFarthestPoint) {

@@ -106,6 +106,7 @@ TYPED_TEST(ContinuousTest, NothingFliesOutOfAClosedRoomOfThinWalls) {
     for (const Made walls : {Made::boxes, Made::segments, Made::thickSegments, Made::tiles}) {
       Space<S> space;
       space.setSolver(solver);
+      space.setContinuous(true);
       space.setGravity({S(0), S(-10)});
       TestFixture::addRoom(space, walls);
       std::vector<BodyId> bullets;
@@ -138,6 +139,7 @@ TYPED_TEST(ContinuousTest, ABallThatMeetsAWallAtTheSpeedLimitBouncesInTheNextSte
   for (const SolverKind solver : kSolvers) {
     Space<S> space;
     space.setSolver(solver);
+    space.setContinuous(true);
     const ShapeId wall = addWall<S>(space, {S(10), S(-5)}, {S(10), S(5)}, S(0x1p-7));
     space.change(wall, [](Shape<S>& shape) { shape.setElasticity(S(1)); });
     const BodyId ball = TestFixture::addBall(space, {S(0), S(0)}, {S(1024), S(0)}, ratio<S>(1, 8), S(1));
@@ -156,6 +158,7 @@ TYPED_TEST(ContinuousTest, APlateThatSpinsDoesNotPassAWallThatItsTipMeets) {
     for (const int spin : {20, 100, 256}) {
       Space<S> space;
       space.setSolver(solver);
+      space.setContinuous(true);
       addWall<S>(space, {S(0), S(-8)}, {S(0), S(8)}, S(0x1p-7));
       Body<S> body;
       // Upright, a little beside the wall, so that it meets it before it has made half a turn.
@@ -182,6 +185,7 @@ TYPED_TEST(ContinuousTest, AWallThatMovesByItselfTakesAlongWhatItMeets) {
     for (const int speed : {10, 100, 1000}) {
       Space<S> space;
       space.setSolver(solver);
+      space.setContinuous(true);
       Body<S> mover = Body<S>::kinematic();
       mover.setPosition({S(-4), S(0)});
       mover.setVelocity({S(speed), S(0)});
@@ -202,6 +206,7 @@ TYPED_TEST(ContinuousTest, ABarThatTurnsByItselfPassesNoBall) {
     for (const int spin : {5, 30, 60}) {
       Space<S> space;
       space.setSolver(solver);
+      space.setContinuous(true);
       Body<S> mover = Body<S>::kinematic();
       mover.setAngularVelocity(S(spin));
       const BodyId bar = space.add(mover);
@@ -226,6 +231,7 @@ TYPED_TEST(ContinuousTest, ABulletMeetsWhatContactsMoveAndOthersDoNot) {
     for (const bool bullet : {true, false}) {
       Space<S> space;
       space.setSolver(solver);
+      space.setContinuous(true);
       const BodyId plate = bodyOf(space, addBox<S>(space, {S(10), S(0)}, S(0x1p-5), S(4), S(1)));
       const BodyId ball = TestFixture::addBall(space, {}, {S(1000), S(0)}, ratio<S>(1, 8));
       space.body(ball).setBullet(bullet);
@@ -241,6 +247,7 @@ TYPED_TEST(ContinuousTest, BulletsThatFlyAtEachOtherMeet) {
   for (const SolverKind solver : kSolvers) {
     Space<S> space;
     space.setSolver(solver);
+    space.setContinuous(true);
     const BodyId a = TestFixture::addBall(space, {S(-9), S(0)}, {S(900), S(0)}, ratio<S>(1, 8), S(1));
     const BodyId b = TestFixture::addBall(space, {S(9), S(0)}, {S(-700), S(0)}, ratio<S>(1, 8), S(1));
     space.body(a).setBullet(true);
@@ -279,6 +286,7 @@ TYPED_TEST(ContinuousTest, SensorsOnTheWayAreToldOnce) {
   for (const SolverKind solver : kSolvers) {
     Space<S> space;
     space.setSolver(solver);
+    space.setContinuous(true);
     Calls calls;
     space.registerHandler(1, countingHandler<S, true>(calls));
     space.addWildcardHandler(5, 1);
@@ -311,6 +319,7 @@ TYPED_TEST(ContinuousTest, HandlersSayWhetherAWallHolds) {
     for (const bool accepts : {true, false}) {
       Space<S> space;
       space.setSolver(solver);
+      space.setContinuous(true);
       Calls calls;
       space.registerHandler(1, accepts ? countingHandler<S, true>(calls) : countingHandler<S, false>(calls));
       space.addWildcardHandler(5, 1);
@@ -335,6 +344,7 @@ TYPED_TEST(ContinuousTest, BodiesThatAJointKeepsFromCollidingPassEachOther) {
     for (const bool collides : {true, false}) {
       Space<S> space;
       space.setSolver(solver);
+      space.setContinuous(true);
       const BodyId post = space.add(Body<S>::fixedInPlace());
       space.add(segmentShape<S>(post, {S(3), S(-1)}, {S(3), S(1)}, S(0x1p-6)));
       const BodyId ball = TestFixture::addBall(space, {}, {S(600), S(0)}, ratio<S>(1, 8));
@@ -353,6 +363,7 @@ TYPED_TEST(ContinuousTest, AFloorDoesNotStopWhatRollsFastOnIt) {
   for (const SolverKind solver : kSolvers) {
     Space<S> space;
     space.setSolver(solver);
+    space.setContinuous(true);
     space.setGravity({S(0), S(-10)});
     for (int i = -2; i < 40; ++i) {
       space.add(boxShape<S>(space.staticBody(), BB<S>(S(i), S(-1), S(i + 1), S(0))));
@@ -392,6 +403,7 @@ TYPED_TEST(ContinuousTest, IsTheSameInAnyOrderWithWorkersAndAfterEachRestore) {
     shared.setWorkers(&pool, Sharing::always);
     for (Space<S>* each : {&space, &backwards, &shared, &restored}) {
       each->setSolver(solver);
+      each->setContinuous(true);
       const std::uint32_t walls[] = {1, 2, 3, 4};
       for (const std::uint32_t i : walls) {
         const S at = i % 2 == 0 ? S(5) : S(-5);

@@ -217,7 +217,7 @@ typedef struct samestep_settings {
   double world_extent;         /* Bodies are held within it along each axis, m, above 0, at most 2^20. */
   double sleep_time_threshold; /* Rest after which islands sleep, s, 0 to 2^10; 0 at first: none does. */
   double idle_speed_threshold; /* Bodies that are no faster are at rest, m/s, 0 to 2^10; 0.05 at first. */
-  int32_t continuous;          /* 0: bodies that go far in a step are not stopped on their way; 1 at first. */
+  int32_t continuous;          /* 1: bodies that go far in a step are stopped on their way; 0 at first. */
   int32_t reserved;            /* 0 */
 } samestep_settings;
 
