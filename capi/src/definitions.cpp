@@ -205,6 +205,7 @@ void samestep_settings_init(samestep_settings* settings) {
   settings->collision_slop = 0.005;
   settings->collision_bias = 0.00179701;
   settings->contact_margin = 0.02;
+  settings->idle_speed_threshold = 0.05;
 }
 
 void samestep_world_def_init(samestep_world_def* def) {

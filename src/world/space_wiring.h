@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "contacts/stages/contact_callbacks.h"
+#include "islands/rouse.h"
 #include "world/space_parts.h"
 
 namespace samestep {
@@ -86,6 +87,8 @@ void bind(StepContext<S> world, const HandlerBinding& binding, const char* asked
     all.insert(place, binding);
   }
   world.wiring.bound.take(all, world.wiring.handlers);
+  // It may refuse what sleepers rest on.
+  if (world.derived.anySleeps(world.state)) Rouse<S>::all(world.state, world.derived);
 }
 
 }  // namespace

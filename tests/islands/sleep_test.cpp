@@ -17,7 +17,7 @@ namespace samestep {
 namespace {
 
 constexpr SolverKind kBothSolvers[] = {SolverKind::softStep, SolverKind::sequentialImpulses};
-constexpr int kLongEnough = 200;
+constexpr int kLongEnough = 400;
 
 /// A tower of boxes on a floor of its own body, and another tower far away on the same floor.
 template <Scalar S>

@@ -225,7 +225,7 @@ TYPED_TEST(OrderTest, ObjectsUnderGivenIdsMayComeAndGoInAnyOrder) {
 TYPED_TEST(OrderTest, SoTheyMayWhereBodiesSleep) {
   const auto [contacts, slept] = playInAnyOrder<TypeParam>(true);
   EXPECT_GT(contacts, 5000u);
-  EXPECT_GT(slept, 1000u);
+  EXPECT_GT(slept, 50u);
 }
 
 TEST(OrderOfFixedTest, TheShapesOfABodyMayComeInAnyOrderWhereverItIs) {

@@ -37,6 +37,8 @@ struct StopDistances {
   /// @param own, other  half of what the shapes measure where they are thinnest, m
   /// @param margin      distance from which on contacts act, m
   StopDistances(S own, S other, S margin) : overlap(min(own + other, own + own) * ratio<S>(1, 4)) {
+    // What has sunk halfway into a thin wall would be pushed out on its other side.
+    if (other > S(0)) overlap = min(overlap, max(other * ratio<S>(1, 2), S(2) * kImpactDistance<S>));
     const bool early = margin >= S(2) * kStopDistance<S>;
     touch = early ? kStopDistance<S> : max(deep(), -min(kStopOverlap<S>, overlap * ratio<S>(1, 2)));
     holds = !early && touch > S(0);

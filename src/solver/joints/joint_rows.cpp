@@ -174,7 +174,9 @@ class RowMaker {
   void limits(S coordinate, Make&& make) const {
     if (joint_.limited == 0) return;
     const S above = coordinate - joint_.lower, below = joint_.upper - coordinate;
-    if (isNear(above)) limit(make(kKeptLower), above, work_.kept.lower);
+    // No distance is below 0: what passes the other anchor has not come to a limit.
+    const bool hasLower = joint_.kind != JointKind::distance || joint_.lower > S(0);
+    if (hasLower && isNear(above)) limit(make(kKeptLower), above, work_.kept.lower);
     if (!isNear(below)) return;
     Row& row = make(kKeptUpper);
     reverse(row);
