@@ -247,7 +247,10 @@ class Scene:
         command = self.library.new("command", kind=6, shape_count=len(shapes))
         command.spawned = ctypes.pointer(self.read_body(body, position))
         command.shapes = ctypes.cast(array, ctypes.POINTER(self.library.types["samestep_shape_def"]))
-        return self.library.get("world_apply", "samestep_body_id", self.world, ctypes.byref(command))
+        made = self.library.get("world_apply", "samestep_body_id", self.world, ctypes.byref(command))
+        if not body.get("maySleep", True):
+            self.library.body_set_may_sleep(self.world, made, 0)
+        return made
 
     def read_body(self, body, position):
         made = self.library.new("body_def", position=self.vector(position))

@@ -760,7 +760,7 @@ SAMESTEP_C_API samestep_status samestep_body_get_connected(samestep_world* world
 enum {
   SAMESTEP_JOINT_BROKE = 0,         /* It is gone: its force or torque was more than it bears. */
   SAMESTEP_JOINT_REACHED_LOWER = 1, /* Its lower limit holds, and did not in the step before. */
-  SAMESTEP_JOINT_REACHED_UPPER = 2
+  SAMESTEP_JOINT_REACHED_UPPER = 2  /* Its upper limit holds, and did not in the step before. */
 };
 
 /* What happened to a joint in the last step. */
