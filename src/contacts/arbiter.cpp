@@ -136,8 +136,6 @@ S Arbiter<S>::totalKE() const {
   if (pair_.solved == 0) return S(0);
   const Body<S>& a = *bodies_[0];
   const Body<S>& b = *bodies_[1];
-  // Both may have been made static since.
-  if (a.inverseMass() == Scaled<S>{} && b.inverseMass() == Scaled<S>{}) return S(0);
   const PairResponse<S> whole = respond(a, b);
   const Vector<S> n = pairNormal();
   const Vector<S> t = perp(n);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "base/change.h"
 #include "contacts/stages/contact_callbacks.h"
 #include "islands/rouse.h"
 #include "world/space_parts.h"
@@ -87,8 +88,11 @@ void bind(StepContext<S> world, const HandlerBinding& binding, const char* asked
     all.insert(place, binding);
   }
   world.wiring.bound.take(all, world.wiring.handlers);
+  if (world.state.settings.sleepTimeThreshold == S(0)) return;
   // It may refuse what sleepers rest on.
-  if (world.derived.anySleeps(world.state)) Rouse<S>::all(world.state, world.derived);
+  Change change(world.leftMidway);
+  Rouse<S>::all(world.state, world.derived);
+  change.done();
 }
 
 }  // namespace
