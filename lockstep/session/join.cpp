@@ -297,7 +297,8 @@ void Session::Impl::pollJoining() {
   chooseServer();
   if (joining.from == kNoSeat) return;
   judgeState();
-  fetchMore();
+  // Who has lied is asked no more.
+  if (joining.from != kNoSeat) fetchMore();
 }
 
 /// Asks another one where nothing new has come.

@@ -222,7 +222,8 @@ TYPED_TEST(SectionsTest, TheBytesOfASavedWorldCountEachOfThem) {
     return now - std::exchange(before, now);
   };
   space.addCollisionHandler(3, 4, 1);
-  EXPECT_EQ(grown(), leavesOf(HandlerBinding()).bytes());
+  // What was roused is listed beside the records.
+  EXPECT_GE(grown(), leavesOf(HandlerBinding()).bytes());
   joinNeighbours(space);
   EXPECT_GE(grown(), 2 * (leavesOf(Joint<S>()).bytes() + sizeof(std::uint32_t)));
   const ShapeId disc = addDisc<S>(space, {S(1), S(1)}, S(1), S(1));
