@@ -69,9 +69,14 @@ S Restitution<S>::pressPair(BouncePoint<S>& first, BouncePoint<S>& second) {
     const Scaled<S> v1 = speedOf(first), v2 = speedOf(second);
     const S u = toScalarWithin<S>((k12 * v2 - k2 * v1) / determinant, kMostChange<S>);
     const S w = toScalarWithin<S>((k12 * v1 - k1 * v2) / determinant, kMostChange<S>);
-    if (u >= -first.taken && w >= -second.taken) return max(take(first, u), take(second, w));
+    if (u >= -first.taken && w >= -second.taken) {
+      const S changed = take(first, u);
+      return max(changed, take(second, w));
+    }
   }
-  return max(pressPoint(first), pressPoint(second));
+  // Compilers evaluate arguments in orders of their own.
+  const S changed = pressPoint(first);
+  return max(changed, pressPoint(second));
 }
 
 /// Solves one point along the tangent, within what friction of all that it has given allows.
