@@ -27,6 +27,8 @@ class Reaching {
  public:
   Reaching(const MovingShape<S>& shape, const Vector<S>& direction, const Vector<S>& from)
       : turn_(shape.motion().turn), reach_(shape.reach()), count_(shape.placed().count) {
+    // A shape has a vertex; compilers do not know it.
+    along_[0] = rising_[0] = S(0);
     for (int i = 0; i < count_; ++i) {
       const Vector<S>& vertex = shape.placed().planes[i].v0;
       along_[i] = dot(vertex - from, direction);
